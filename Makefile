@@ -46,7 +46,8 @@ test-on-postgresql: setup-develop .venv/.made-ready ## Its second: on PostgreSQL
 test-alone: setup-develop .venv/.made-ready ## Its third: what measures real time, with nothing beside it
 	$(BIN)/python -m pytest -m "alone and not nightly" $(ALONE_IN)
 
-test-nightly: nightly-beside nightly-on-postgresql nightly-alone ## Run the tests that no change can wait for: whole missions, kills at any moment, every page in every state
+test-nightly: ## Run the tests that no change can wait for: whole missions, kills at any moment, every page in every state
+	@$(MAKE) --no-print-directory --keep-going nightly-beside nightly-on-postgresql nightly-alone
 
 # Its stages. Whole missions of four at a time may take minutes each, so that it takes longer until one is said to hang.
 NIGHTLY_LIMIT = --timeout 600

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from random import Random
 from typing import Any
 
-from benchmarks.body.killed_letters import WANTED, Outcome, killed_letter, on_both_maps, summary
-from benchmarks.body.lone_letter import LetterRun
+from benchmarks.body.killed_letters import WANTED, Outcome, killed_letter, summary
+from benchmarks.body.lone_letter import LetterRun, on_both_maps
 from benchmarks.body.report import Samples
 from robot.skills import Dock, FindLine, Turn, Undock
 
@@ -28,10 +28,10 @@ def measure(samples: Samples) -> dict[str, Any]:
 
 def letter(world: str, seed: int) -> Outcome:
     """One letter, whose robot is killed six times at most."""
-    return killed_letter(world, seed, KILLS_OF_A_LETTER, _some_moment, LOW_RATIO)
+    return killed_letter(world, seed, KILLS_OF_A_LETTER, _some_time, LOW_RATIO)
 
 
-def _some_moment(run: LetterRun, random: Random) -> Callable[[], bool]:
+def _some_time(run: LetterRun, random: Random) -> Callable[[], bool]:
     until_s = run.clock.now() + random.uniform(0.0, MOST_S)
     return _off_the_line(run, random) if random.random() < 0.5 else lambda: run.clock.now() >= until_s
 

@@ -11,8 +11,7 @@ from random import Random
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from benchmarks.body.killed_letters import on_both_maps
-from benchmarks.body.lone_letter import LetterRun
+from benchmarks.body.lone_letter import LetterRun, on_both_maps
 from benchmarks.body.missions import MEMORY
 from benchmarks.body.report import Samples, Wanted, quietly, say
 

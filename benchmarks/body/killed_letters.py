@@ -5,18 +5,15 @@ What a kill leaves on the disk is judged by `kills`. The simulated base stands a
 """
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from multiprocessing import get_context
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
-from typing import Any, TypeVar
+from typing import Any
 
 from benchmarks.body.lone_letter import LetterRun
-from benchmarks.body.missions import MEMORY, PROCESSES
+from benchmarks.body.missions import MEMORY
 from benchmarks.body.report import Wanted, quietly, say
-from robot.scenarios.replay.drawing import WORLDS
 
 WANTED = (
     Wanted("without_grant", at_most=0, unit="letters"),
@@ -24,9 +21,8 @@ WANTED = (
     Wanted("delivered_share", at_least=1.0, unit="of the letters"),
 )
 
-Moment = Callable[[LetterRun, Random], Callable[[], bool]]
+KillTime = Callable[[LetterRun, Random], Callable[[], bool]]
 """Draws when to kill; what it makes tells whether that has come."""
-Played = TypeVar("Played")
 
 
 @dataclass(frozen=True)
@@ -42,22 +38,14 @@ class Outcome:
     """So often it could not tell where it was or found no line, and a person was told."""
 
 
-def on_both_maps(play: Callable[[str, int], Played], first_seed: int, number: int) -> list[Played]:
-    """So many, on one map after the other, in processes of their own. `play` is a module's function."""
-    worlds = list(WORLDS)
-    tasks = [(worlds[index % len(worlds)], first_seed + index) for index in range(number)]
-    with ProcessPoolExecutor(PROCESSES, mp_context=get_context("spawn")) as pool:
-        return list(pool.map(play, *zip(*tasks, strict=True)))
-
-
-def killed_letter(world: str, seed: int, kills: int, moment: Moment, drains_to: float | None = None) -> Outcome:
-    """One letter, whose robot is killed at moments that are drawn anew after each start, so often at most."""
+def killed_letter(world: str, seed: int, kills: int, kill_time: KillTime, drains_to: float | None = None) -> Outcome:
+    """One letter, whose robot is killed at times that are drawn anew after each start, so often at most."""
     quietly()
     random = Random(f"{world}/{seed}/kills")
     with TemporaryDirectory(prefix="letter-", dir=MEMORY if MEMORY.is_dir() else None) as folder:
         run = LetterRun(Path(folder), world, seed, drains_to=drains_to)
         killed = 0
-        while killed < kills and run.run(moment(run, random)):
+        while killed < kills and run.run(kill_time(run, random)):
             killed += 1
             run.kill()
             run.start()

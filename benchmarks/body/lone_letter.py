@@ -6,11 +6,15 @@ was granted and with where it believes to stand.
 
 import math
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from hashlib import sha256
+from multiprocessing import get_context
 from pathlib import Path
 from random import Random
+from typing import TypeVar
 
+from benchmarks.body.missions import PROCESSES
 from maps import corridor_name
 from protocol.clock import SteppedClock
 from protocol.parts import Leg, Part, Purpose, Stop, StopAction
@@ -30,6 +34,7 @@ DEAD_S = 3.0
 SHOWN_FOR_S = 4.0
 AT_DOCK_M = 1.0
 LIMIT_S = 2500.0
+Played = TypeVar("Played")
 SETTINGS = {"rates.line_hz": 50.0, "battery.simulated_charger_ma": 60_000.0}
 STOPS = {Purpose.LOAD: StopAction.LOAD, Purpose.RECEIVE: StopAction.RECEIVE}
 
@@ -197,3 +202,11 @@ class LetterRun:
             for (purpose, action), post in zip(STOPS.items(), places, strict=True)
         )
         missions.give(Mission(id="m1", update=1, stops=stops))
+
+
+def on_both_maps(play: Callable[[str, int], Played], first_seed: int, number: int) -> list[Played]:
+    """So many, on one map after the other, in processes of their own. `play` is a module's function."""
+    worlds = list(WORLDS)
+    tasks = [(worlds[index % len(worlds)], first_seed + index) for index in range(number)]
+    with ProcessPoolExecutor(PROCESSES, mp_context=get_context("spawn")) as pool:
+        return list(pool.map(play, *zip(*tasks, strict=True)))

@@ -3,8 +3,8 @@
 from random import Random
 from typing import Any
 
-from benchmarks.body.killed_letters import WANTED, Outcome, killed_letter, on_both_maps, summary
-from benchmarks.body.lone_letter import LetterRun
+from benchmarks.body.killed_letters import WANTED, Outcome, killed_letter, summary
+from benchmarks.body.lone_letter import LetterRun, on_both_maps
 from benchmarks.body.report import Samples
 from robot.localization.steps import REACHED_MM
 
