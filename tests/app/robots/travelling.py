@@ -51,12 +51,12 @@ class Traveller:
         return self.track.at[self.robot.name]
 
     @asynccontextmanager
-    async def greeted(self, service: Service) -> AsyncIterator[None]:
+    async def greeted(self, service: Service, understands: tuple[str, ...] = UNDERSTANDS) -> AsyncIterator[None]:
         self.robot.token = self.robot.token or await service.enrol(self.robot.name)
         async with self.robot.connected(service.url, self.robot.token):
             # The track has one dock. A robot that tells no home is planned for as if it were at home there, too.
             home = "post5" if self.robot.name == "r1" else None
-            await self.robot.greet(self.post, home=home, understands=UNDERSTANDS)
+            await self.robot.greet(self.post, home=home, understands=understands)
             yield
 
     async def go_to(self, goal: str) -> None:

@@ -42,6 +42,20 @@ async def test_two_robots_swap_places_on_a_line_where_they_cannot_pass(traveller
     assert first.track.asides, "one of them had to step aside"
 
 
+async def test_an_older_robot_that_should_step_aside_is_denied_its_way_instead_and_the_denial_is_kept(
+    service: Service, clock: SteppedClock
+) -> None:
+    async def denied() -> list[ClaimRow]:
+        return [one for one in await service.rows(ClaimRow) if one.granted is False]
+
+    first, second = on_one_track(clock, r1="post1", r2="post4")
+    async with first.greeted(service, understands=()), second.greeted(service, understands=()):
+        swapping = asyncio.gather(first.go_to("post4"), second.go_to("post1"))
+        (claim,) = await until(denied)
+        swapping.cancel()
+        assert claim.reason == "others have to pass"
+
+
 async def test_who_waits_is_told_for_whom_and_people_see_it(
     service: Service, travellers: tuple[Traveller, Traveller]
 ) -> None:
