@@ -1,10 +1,9 @@
 """Where things are: campus maps as data (TOML), their one reader, routes on them, and their check."""
 
+from maps.bays import Bay, Dock, Marker
 from maps.campus_map import (
     CampusMap,
     Corridor,
-    Dock,
-    Marker,
     Post,
     builtin_map,
     corridor_name,
@@ -16,6 +15,7 @@ from maps.geometry import Point
 from maps.routes import Route, shortest_route
 
 __all__ = [
+    "Bay",
     "CampusMap",
     "CampusMapError",
     "Corridor",

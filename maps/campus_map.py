@@ -5,8 +5,8 @@ that turns a map file into something to work with; service, robot and simulator 
 """
 
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from hashlib import sha256
 from itertools import pairwise
@@ -14,46 +14,31 @@ from json import dumps, loads
 from pathlib import Path
 from typing import Any
 
+from maps.bays import (
+    MARKER_BEFORE_CROSSING_M,
+    MARKER_BEFORE_PLACE_M,
+    Bay,
+    Dock,
+    Marker,
+    bays_of,
+    marker,
+    own_markers,
+)
 from maps.errors import MapError, UnknownCorridor, UnknownPost
-from maps.geometry import Point, heading_rad, moved, path_length_m, rounded
-from maps.map_file import CorridorRow, MapFile, PoseRow, PostRow, load_map_file
+from maps.geometry import Point, heading_rad, path_length_m, rounded
+from maps.map_file import CorridorRow, MapFile, PostRow, load_map_file
 from maps.structure import structure_problems
 
-MARKER_SIZE_M = 0.08
-# Where a marker stands unless the file says otherwise, as seen on arrival at the post: on the left, where
-# the camera looks; before the post, so that the robot knows the distance left to roll; and clear of the line by more
-# than the robot's radius (174 mm), so that a branch to the left stays free.
-MARKER_BEFORE_POST_M = 0.30
-MARKER_BESIDE_LINE_M = 0.35
 FOLDER = Path(__file__).parent
 
 
 @dataclass(frozen=True)
-class Marker:
-    """A QR code that says `post`, at (x_m, y_m); heading_rad is the way its printed face looks."""
-
-    post: str
-    x_m: float
-    y_m: float
-    heading_rad: float
-    size_m: float = MARKER_SIZE_M
-
-
-@dataclass(frozen=True)
-class Dock:
-    """Where the centre of a docked robot is, and the way that robot looks: into the dock."""
-
-    x_m: float
-    y_m: float
-    heading_rad: float
-
-
-@dataclass(frozen=True)
 class Post:
-    """A place where a robot can stop. `bays` is how many can stand there clear of the line; `homes` how many have their
-    home place there, clear of the bays too, the dock among them; `tag`: see `maps.tags`.
+    """An address: where lines meet, with `spurs`, the bays on the floor in which robots stand.
 
-    `network` False: no robot is heard there.
+    `bays` is how many robots can stand there clear of the line; `homes` how many have their home place there, clear of
+    the bays too, the dock among them; `tag`: see `maps.tags`. `network` False: no robot is heard there. `bay_of`: on a
+    track, this is a bay of that post.
     """
 
     name: str
@@ -67,6 +52,8 @@ class Post:
     tag: int | None = None
     network: bool = True
     homes: int = 0
+    spurs: tuple[Bay, ...] = ()
+    bay_of: str | None = None
 
     @property
     def point(self) -> Point:
@@ -153,6 +140,26 @@ class CampusMap:
                 return corridor
         raise UnknownCorridor(name, self.name)
 
+    @cached_property
+    def track(self) -> "CampusMap":
+        """The lines as a robot follows them: each bay is a place like a post, each spur a corridor that leads there.
+
+        Its posts have no dock, their bays do. The same map where no post has a bay on the floor.
+        """
+        if not any(post.spurs for post in self.posts.values()):
+            return self
+        places = {place.name: place for post in self.posts.values() for place in _places(post)}
+        spurs = tuple(_spur(post, bay) for post in self.posts.values() for bay in post.spurs)
+        return CampusMap(self.name, self.title, places, (*self.corridors, *spurs), self.note)
+
+    def address_of(self, place: str) -> str:
+        """The post of a bay; any other name as it is."""
+        return self._addresses.get(place, place)
+
+    @cached_property
+    def _addresses(self) -> Mapping[str, str]:
+        return {bay.name: post.name for post in self.posts.values() for bay in post.spurs}
+
     def docks(self) -> tuple[Post, ...]:
         """The posts that have a charging station."""
         return tuple(post for post in self.posts.values() if post.dock)
@@ -198,7 +205,7 @@ def build_map(file: MapFile) -> CampusMap:
     """The map of a file in whose structure nothing is wrong."""
     points = {post.name: Point(post.x_m, post.y_m) for post in file.post}
     corridors = tuple(_corridor(row, points) for row in file.corridor)
-    posts = {row.name: _post(row, corridors, tag) for row, tag in zip(file.post, file.tags(), strict=True)}
+    posts = {row.name: _post(row, corridors, file.tags()) for row in file.post}
     return CampusMap(file.name, file.title, posts, corridors, file.note.strip())
 
 
@@ -211,31 +218,45 @@ def _corridor(row: CorridorRow, points: Mapping[str, Point]) -> Corridor:
     return Corridor(a, b, row.length_m or path_length_m(tape), row.assumed, tape, row.network, row.following_s)
 
 
-def _post(row: PostRow, corridors: tuple[Corridor, ...], tag: int | None) -> Post:
+def _post(row: PostRow, corridors: tuple[Corridor, ...], tags: Mapping[str, int | None]) -> Post:
+    spurs = bays_of(row, tags)
     dock = Dock(row.dock.x_m, row.dock.y_m, math.radians(row.dock.heading_deg)) if row.dock else None
-    markers = _standard_markers(row, dock, corridors) if row.markers is None else _own_markers(row.name, row.markers)
-    title = row.title or row.name
-    homes = int(dock is not None) if row.homes is None else row.homes
-    return Post(row.name, title, row.x_m, row.y_m, markers, dock, row.bays, row.mailroom, tag, row.network, homes)
+    arrivals = [c.heading_arriving(row.name) for c in corridors if row.name in (c.a, c.b)]
+    markers = (
+        _standard_markers(row, dock, arrivals, spurs) if row.markers is None else own_markers(row.name, row.markers)
+    )
+    if spurs:
+        homes = sum(bay.home for bay in spurs)
+        bays = len(spurs) - homes
+        dock = next((bay.dock for bay in spurs if bay.dock), None)
+    else:
+        homes, bays = int(dock is not None) if row.homes is None else row.homes, 1 if row.bays is None else row.bays
+    title, tag = row.title or row.name, tags[row.name]
+    return Post(row.name, title, row.x_m, row.y_m, markers, dock, bays, row.mailroom, tag, row.network, homes, spurs)
 
 
-def _own_markers(post: str, rows: tuple[PoseRow, ...]) -> tuple[Marker, ...]:
-    return tuple(Marker(post, row.x_m, row.y_m, math.radians(row.heading_deg)) for row in rows)
-
-
-def _standard_markers(row: PostRow, dock: Dock | None, corridors: tuple[Corridor, ...]) -> tuple[Marker, ...]:
+def _standard_markers(
+    row: PostRow, dock: Dock | None, arrivals: Sequence[float], spurs: tuple[Bay, ...]
+) -> tuple[Marker, ...]:
     """One beside every approach and one beside a docked robot, so that it knows where it is when it wakes up."""
     here = Point(row.x_m, row.y_m)
-    arrivals = [c.heading_arriving(row.name) for c in corridors if row.name in (c.a, c.b)]
-    beside_line = [_marker(row.name, here, heading, MARKER_BEFORE_POST_M) for heading in arrivals]
-    beside_dock = [_marker(row.name, Point(dock.x_m, dock.y_m), dock.heading_rad, 0.0)] if dock else []
+    before_m = MARKER_BEFORE_CROSSING_M if spurs else MARKER_BEFORE_PLACE_M
+    beside_line = [marker(row.name, here, heading, before_m) for heading in arrivals]
+    beside_dock = [marker(row.name, Point(dock.x_m, dock.y_m), dock.heading_rad, 0.0)] if dock else []
     return (*beside_line, *beside_dock)
 
 
-def _marker(post: str, seen_from: Point, robot_heading_rad: float, before_m: float) -> Marker:
-    """A marker on the left of a robot, its face turned towards the camera."""
-    x_m, y_m = moved(seen_from, robot_heading_rad, -before_m, MARKER_BESIDE_LINE_M)
-    return Marker(post, x_m, y_m, heading_rad(Point(x_m, y_m), moved(seen_from, robot_heading_rad, -before_m)))
+def _places(post: Post) -> Iterator[Post]:
+    """The post without what its bays have, and each bay as a post."""
+    yield replace(post, dock=None, bays=0, homes=0, spurs=()) if post.spurs else post
+    for number, bay in enumerate(post.spurs, start=1):
+        title = f"{post.title}, bay {number}"
+        place = Post(bay.name, title, bay.x_m, bay.y_m, bay.markers, bay.dock, tag=bay.tag, network=post.network)
+        yield replace(place, homes=int(bay.home), bay_of=post.name)
+
+
+def _spur(post: Post, bay: Bay) -> Corridor:
+    return Corridor(post.name, bay.name, bay.length_m, False, (post.point, bay.point), post.network)
 
 
 def _fingerprint(name: str, posts: Iterable[Post], corridors: Iterable[Corridor]) -> str:
@@ -248,7 +269,7 @@ def _fingerprint(name: str, posts: Iterable[Post], corridors: Iterable[Corridor]
 
 def _facts(place: Post | Corridor) -> dict[str, Any]:
     """Maps that say nothing of what was added later keep their version."""
-    usual: dict[str, Any] = {"network": True, "following_s": None}
+    usual: dict[str, Any] = {"network": True, "following_s": None, "spurs": (), "bay_of": None}
     if isinstance(place, Post):
         usual["homes"] = int(place.dock is not None)
     return {key: value for key, value in asdict(place).items() if key not in usual or value != usual[key]}

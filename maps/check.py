@@ -4,7 +4,8 @@ import math
 from collections.abc import Iterator
 from pathlib import Path
 
-from maps.campus_map import CampusMap, Corridor, Marker, Post, build_map, corridor_name
+from maps.bays import Marker
+from maps.campus_map import CampusMap, Corridor, Post, build_map, corridor_name
 from maps.carrying import places_problems
 from maps.geometry import Point, distance_to_path_m, seen_from, wrapped
 from maps.map_file import MapFile, PostRow, load_map_file

@@ -33,13 +33,32 @@ class PoseRow(Row):
     heading_deg: Degrees
 
 
+class BayRow(Row):
+    """A spur of tape off the post, from its middle to where the axle of a robot stands."""
+
+    bearing_deg: Degrees
+    length_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 0.8
+    # Kept for the robot whose home it is.
+    home: bool = False
+    # Beyond the end of the tape, straight on. A bay with a dock is a home.
+    dock: bool = False
+    # Left out: the post's name and `_bay`, with the bay's place in this file, counted from 1.
+    name: str | None = None
+    # Left out: counted down from the last tag, so that a post more leaves the sheets of bays as they are.
+    tag: int | None = Field(default=None, ge=0, le=LAST_TAG)
+
+
 class PostRow(Row):
     name: str
     title: str = ""
     x_m: Metres
     y_m: Metres
-    bays: int = Field(default=1, ge=0)
-    # Places where a robot can rest clear of line and bays, the dock among them. Left out: one where there is a dock.
+    # Where robots stand, clear of the line.
+    bay: tuple[BayRow, ...] = ()
+    # Of maps from before bays had places on the floor: how many robots can stand there (left out: one), the places
+    # where a robot can rest clear of line and bays, the dock among them (left out: one where there is a dock), the
+    # dock's pose. A post has either these or `bay`.
+    bays: int | None = Field(default=None, ge=0)
     homes: int | None = Field(default=None, ge=0)
     mailroom: bool = False
     # False: a robot that stands here is not heard of until it is back where there is network.
@@ -52,6 +71,9 @@ class PostRow(Row):
     # Which neighbour lies on which side, 1 to 4 clockwise in the post's own frame. A survey may know this before
     # anybody has measured anything; the map check compares it with the corridors and with the geometry.
     sides: dict[Side, str] | None = None
+
+    def bay_names(self) -> list[str]:
+        return [bay.name or f"{self.name}_bay{number}" for number, bay in enumerate(self.bay, start=1)]
 
 
 class CorridorRow(Row):
@@ -76,10 +98,15 @@ class MapFile(Row):
     post: tuple[PostRow, ...] = Field(min_length=1)
     corridor: tuple[CorridorRow, ...] = ()
 
-    def tags(self) -> list[int | None]:
-        """The number of each post's AprilTag, in the order of the file; None beyond the last of the family."""
-        places = (place if place <= LAST_TAG else None for place in range(len(self.post)))
-        return [place if row.tag is None else row.tag for row, place in zip(self.post, places, strict=True)]
+    def tags(self) -> dict[str, int | None]:
+        """The number of the AprilTag of each post and bay by name; None where the family has no more."""
+        bays = [pair for row in self.post for pair in zip(row.bay_names(), row.bay, strict=True)]
+        posts = {row.name: _tag(row.tag, place) for place, row in enumerate(self.post)}
+        return posts | {name: _tag(bay.tag, LAST_TAG - place) for place, (name, bay) in enumerate(bays)}
+
+
+def _tag(own: int | None, place: int) -> int | None:
+    return own if own is not None else place if 0 <= place <= LAST_TAG else None
 
 
 def load_map_file(path: Path) -> MapFile:

@@ -12,7 +12,8 @@ from io import BytesIO
 
 import segno
 
-from maps.campus_map import MARKER_BEFORE_POST_M, MARKER_BESIDE_LINE_M, MARKER_SIZE_M, CampusMap, Post
+from maps.bays import MARKER_BEFORE_PLACE_M, MARKER_BESIDE_LINE_M, MARKER_SIZE_M
+from maps.campus_map import CampusMap, Post
 from maps.tags import TAG_SIZE_MM
 
 PAGE_WIDTH_MM = 148
@@ -107,7 +108,7 @@ def explaining_page(campus: CampusMap, posts: tuple[Post, ...], april_tags: bool
         "3. Cut at the marks in the corners. Leave the white round the code.",
         f"4. Mount it upright, the middle of the code {LENS_HEIGHT_MM} mm above the floor,",
         "    facing the line, on the LEFT of a robot that arrives:",
-        f"    {MARKER_BEFORE_POST_M * 1000:g} mm before the post, {MARKER_BESIDE_LINE_M * 1000:g} mm beside the line,",
+        f"    {MARKER_BEFORE_PLACE_M * 1000:g} mm before the post, {MARKER_BESIDE_LINE_M * 1000:g} mm beside the line,",
         "    or where the map file says.",
         "5. A dock has one more, abreast of the docked robot.",
         "6. All sheets of a post are the same; each approach needs one.",

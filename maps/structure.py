@@ -18,6 +18,7 @@ LENGTH_TOLERANCE_M = 0.01
 def structure_problems(file: MapFile) -> Iterator[Problem]:
     """Everything that makes the file unusable; nothing when it is a map."""
     yield from _names(file)
+    yield from _both_kinds_of_bays(file)
     yield from _twice(file)
     points = {post.name: Point(post.x_m, post.y_m) for post in file.post}
     for corridor in file.corridor:
@@ -25,7 +26,7 @@ def structure_problems(file: MapFile) -> Iterator[Problem]:
 
 
 def _names(file: MapFile) -> Iterator[Problem]:
-    for name in (file.name, *(post.name for post in file.post)):
+    for name in (file.name, *_place_names(file)):
         if name.upper().startswith(HANDOVER_CODE_PREFIX):
             said = f"{name!r} looks like a hand-over code, so a robot would never take its marker for a post"
             yield error("code_as_name", name, said, f"No name may begin with {HANDOVER_CODE_PREFIX}")
@@ -34,13 +35,29 @@ def _names(file: MapFile) -> Iterator[Problem]:
             yield error("bad_name", name, said, "Begin with a small letter; then letters, digits and underscores.")
 
 
+def _place_names(file: MapFile) -> Iterator[str]:
+    for post in file.post:
+        yield post.name
+        yield from post.bay_names()
+
+
+def _both_kinds_of_bays(file: MapFile) -> Iterator[Problem]:
+    for post in file.post:
+        old = [key for key in ("bays", "homes", "dock") if getattr(post, key) is not None]
+        if post.bay and old:
+            said = f"it has bays on the floor, and {' and '.join(old)} from before there were such"
+            yield error("bays_twice", post.name, said, "Keep the tables [[post.bay]]; a home or a dock is a bay.")
+
+
 def _twice(file: MapFile) -> Iterator[Problem]:
-    for name, times in Counter(post.name for post in file.post).items():
+    for name, times in Counter(_place_names(file)).items():
         if times > 1:
-            yield error("post_twice", name, f"{times} posts have this name", "Give each post a name of its own.")
-    for tag, times in Counter(tag for tag in file.tags() if tag is not None).items():
+            said = f"{times} posts or bays have this name"
+            yield error("post_twice", name, said, "Give each of them a name of its own.")
+    tags = file.tags()
+    for tag, times in Counter(tag for tag in tags.values() if tag is not None).items():
         if times > 1:
-            posts = " and ".join(row.name for row, its in zip(file.post, file.tags(), strict=True) if its == tag)
+            posts = " and ".join(name for name, its in tags.items() if its == tag)
             said = f"{posts} have the same tag, since a post without a tag of its own has its place in the file"
             yield error("tag_twice", f"tag {tag}", said, "Give each of them a tag of its own.")
     for name, times in Counter(corridor.name for corridor in file.corridor).items():

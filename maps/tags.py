@@ -1,8 +1,8 @@
-"""Which AprilTag 36h11 stands for which post: the one table that sheets, robot and simulator use.
+"""Which AprilTag 36h11 stands for which post or bay: the one table that sheets, robot and simulator use.
 
-A post's number is its key `tag` in the map file, or else its place there, counted from 0. Posts that are added at the
-end of a file leave the printed sheets of all others as they are; an editor who sorts a file pins the numbers with
-`tag`.
+A post's number is its key `tag` in the map file, or else its place there, counted from 0; bays are counted down from
+the last tag. What is added at the end of a file leaves all other printed sheets as they are; an editor who sorts a file
+pins the numbers with `tag`.
 """
 
 from maps.campus_map import CampusMap
@@ -12,5 +12,5 @@ TAG_SIZE_MM = 40.0
 
 
 def tag_numbers(campus: CampusMap) -> dict[int, str]:
-    """Number → name of the post."""
-    return {post.tag: post.name for post in campus.posts.values() if post.tag is not None}
+    """Number → name of the post or bay."""
+    return {place.tag: place.name for place in campus.track.posts.values() if place.tag is not None}

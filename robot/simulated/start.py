@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from maps import CampusMap, UnknownPost
-from maps.campus_map import MARKER_BEFORE_POST_M
+from maps.bays import MARKER_BEFORE_PLACE_M
 from maps.errors import UnknownCorridor
 from maps.geometry import moved
 from robot.simulated.errors import UnknownStart
@@ -47,7 +47,7 @@ def _arrived(campus: CampusMap, name: str) -> Pose:
     if not ways:
         raise UnknownStart(name, "no corridor leads there")
     heading = ways[0][1].heading_arriving(name)
-    return Pose(*moved(post.point, heading, -MARKER_BEFORE_POST_M), heading)
+    return Pose(*moved(post.point, heading, -MARKER_BEFORE_PLACE_M), heading)
 
 
 def _leaving(campus: CampusMap, name: str, towards: str) -> Pose:

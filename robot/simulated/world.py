@@ -20,11 +20,13 @@ class World:
         self, campus: CampusMap, obstacles: Iterable[Obstacle] = (), gap_m: float = 0.0, seed: int = 0
     ) -> None:
         self.campus = campus
-        self.floor = Floor(campus, gap_m, Random(f"{seed}/gaps"))
+        self.floor = Floor(campus.track, gap_m, Random(f"{seed}/gaps"))
         self.obstacles = list(obstacles)
         self.robots: list[Obstacle] = []
-        self.docks: tuple[Dock, ...] = tuple(post.dock for post in campus.docks() if post.dock)
-        self.markers: tuple[Marker, ...] = tuple(marker for post in campus.posts.values() for marker in post.markers)
+        self.docks: tuple[Dock, ...] = tuple(place.dock for place in campus.track.docks() if place.dock)
+        self.markers: tuple[Marker, ...] = tuple(
+            marker for place in campus.track.posts.values() for marker in place.markers
+        )
 
     def dock_beside(self, x_m: float, y_m: float, heading_rad: float) -> Beside | None:
         """Return the nearest dock's relation to a robot at this pose, if one is within sight of its beams."""

@@ -194,7 +194,7 @@ def test_a_map_is_found_by_name_or_by_file(write_map):
         (TWO_POSTS + CORRIDOR + CORRIDOR, "a-b", "2 corridors join"),
         (TWO_POSTS + CORRIDOR + "length_m = 4.9\n", "a-b", "shorter than the straight line of 5.00 m"),
         (TWO_POSTS.replace("3.0", "0.0").replace("4.0", "0.0") + CORRIDOR, "a-b", "stand in the same place"),
-        (TWO_POSTS.replace('"b"', '"a"'), "a", "2 posts have this name"),
+        (TWO_POSTS.replace('"b"', '"a"'), "a", "2 posts or bays have this name"),
         (TWO_POSTS.replace('"b"', '"Post 1"'), "Post 1", "not a name"),
         (TWO_POSTS.replace('"b"', '"CM1:abc"'), "CM1:abc", "looks like a hand-over code"),
     ],

@@ -3,9 +3,10 @@
 import re
 
 from maps import find_map
-from maps.campus_map import FOLDER, MARKER_BEFORE_POST_M, MARKER_BESIDE_LINE_M
+from maps.bays import MARKER_BEFORE_PLACE_M, MARKER_BESIDE_LINE_M
+from maps.campus_map import FOLDER
 from maps.check import check_file
-from maps.map_file import CorridorRow, MapFile, PostRow, load_map_file
+from maps.map_file import BayRow, CorridorRow, MapFile, PostRow, load_map_file
 
 PAGE = (FOLDER.parent / "docs/reference/maps.md").read_text(encoding="utf-8")
 EXAMPLES = FOLDER.parent / "examples/maps"
@@ -21,8 +22,12 @@ def test_the_format_on_the_page_is_a_map_file_that_uses_every_key(tmp_path):
     path = tmp_path / "campus.toml"
     path.write_text(block("toml"), encoding="utf-8")
     file = load_map_file(path)
-    for row, table in ((file, MapFile), (file.post[0], PostRow), (file.corridor[0], CorridorRow)):
+    post = file.post[0]
+    for row, table in ((file, MapFile), (post.bay[0], BayRow), (file.corridor[0], CorridorRow)):
         assert row.model_fields_set == set(table.model_fields)
+    before_bays_had_places = {"bays", "homes", "dock"}
+    assert post.model_fields_set == set(PostRow.model_fields) - before_bays_had_places
+    assert all(f"`{key}" in PAGE for key in before_bays_had_places)
 
 
 def test_every_kind_of_problem_is_explained():
@@ -41,7 +46,7 @@ def test_the_code_on_the_page_runs():
 
 
 def test_the_standard_places_are_the_ones_on_the_page():
-    assert f"**{MARKER_BEFORE_POST_M:.2f} m before the post, {MARKER_BESIDE_LINE_M:.2f} m beside the line" in PAGE
+    assert f"**{MARKER_BEFORE_PLACE_M:.2f} m before the post, {MARKER_BESIDE_LINE_M:.2f} m beside the line" in PAGE
 
 
 def test_the_example_of_an_own_campus_is_fit_for_robots():

@@ -6,7 +6,7 @@ The camera looks to the left, so that right in the picture is ahead of the robot
 from collections import deque
 from collections.abc import Iterable, Mapping
 
-from maps.campus_map import MARKER_SIZE_M
+from maps.bays import MARKER_SIZE_M
 from robot.drivers.camera.april_tags import TagDetector
 from robot.drivers.camera.frozen_picture import FrozenPicture
 from robot.drivers.camera.marker_pose import Optics, SheetPose, code_pose, tag_pose
