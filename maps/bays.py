@@ -19,6 +19,8 @@ MARKER_BEFORE_PLACE_M = 0.30
 MARKER_BEFORE_CROSSING_M = 0.60
 """Before a post with bays: a robot that may not cross yet reads it, and stops where nothing that crosses can touch
 it."""
+MARKER_BEFORE_BAY_M = 0.10
+"""Nearer than before a post: markers of other lines stand beside the beginning of the spur."""
 MARKER_BESIDE_LINE_M = 0.35
 DOCK_BEYOND_BAY_M = 0.50
 """The centre of a docked robot, from the end of the tape: the firmware needs that much to come straight."""
@@ -77,7 +79,7 @@ def _bay(row: PostRow, bay: BayRow, name: str, tag: int | None) -> Bay:
     post = Point(row.x_m, row.y_m)
     end = moved(post, bearing_rad, bay.length_m)
     dock = Dock(*moved(end, bearing_rad, DOCK_BEYOND_BAY_M), bearing_rad) if bay.dock else None
-    beside_end = marker(name, end, bearing_rad, MARKER_BEFORE_PLACE_M)
+    beside_end = marker(name, end, bearing_rad, MARKER_BEFORE_BAY_M)
     beside_dock = (marker(name, Point(dock.x_m, dock.y_m), bearing_rad, 0.0),) if dock else ()
     home = bay.home or bay.dock
     markers = (beside_end, *beside_dock)

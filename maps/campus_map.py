@@ -158,7 +158,19 @@ class CampusMap:
 
     @cached_property
     def _addresses(self) -> Mapping[str, str]:
-        return {bay.name: post.name for post in self.posts.values() for bay in post.spurs}
+        return {place.name: place.bay_of for place in self.track.posts.values() if place.bay_of}
+
+    def bays_of(self, post: str) -> tuple[Post, ...]:
+        """On a track: the bays of a post, in the order of the file; none where robots stand on the post itself."""
+        return self._bays.get(post, ())
+
+    @cached_property
+    def _bays(self) -> Mapping[str, tuple[Post, ...]]:
+        bays: dict[str, tuple[Post, ...]] = {}
+        for place in self.posts.values():
+            if place.bay_of:
+                bays[place.bay_of] = (*bays.get(place.bay_of, ()), place)
+        return bays
 
     def docks(self) -> tuple[Post, ...]:
         """The posts that have a charging station."""
@@ -222,6 +234,7 @@ def _post(row: PostRow, corridors: tuple[Corridor, ...], tags: Mapping[str, int 
     spurs = bays_of(row, tags)
     dock = Dock(row.dock.x_m, row.dock.y_m, math.radians(row.dock.heading_deg)) if row.dock else None
     arrivals = [c.heading_arriving(row.name) for c in corridors if row.name in (c.a, c.b)]
+    arrivals += [bay.bearing_rad + math.pi for bay in spurs]
     markers = (
         _standard_markers(row, dock, arrivals, spurs) if row.markers is None else own_markers(row.name, row.markers)
     )

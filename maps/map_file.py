@@ -37,7 +37,7 @@ class BayRow(Row):
     """A spur of tape off the post, from its middle to where the axle of a robot stands."""
 
     bearing_deg: Degrees
-    length_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 0.8
+    length_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 1.0
     # Kept for the robot whose home it is.
     home: bool = False
     # Beyond the end of the tape, straight on. A bay with a dock is a home.

@@ -14,6 +14,7 @@ x_m = 0.0
 y_m = 0.0
 [[post.bay]]
 bearing_deg = 90.0
+length_m = 0.8
 [[post.bay]]
 bearing_deg = 180.0
 length_m = 0.6
@@ -69,18 +70,25 @@ def test_addresses_are_posts_alone(campus):
     with pytest.raises(UnknownPost):
         campus.post("a_bay1")
     assert (campus.address_of("a_bay1"), campus.address_of("b")) == ("a", "b")
+    assert campus.track.address_of("a_bay1") == "a"
+
+
+def test_the_track_tells_the_bays_of_a_post(campus):
+    assert [bay.name for bay in campus.track.bays_of("a")] == ["a_bay1", "a_bay2"]
+    assert campus.track.bays_of("b") == ()
 
 
 def test_a_bay_has_a_marker_on_the_left_before_its_end(campus):
     (marker,) = campus.post("a").spurs[0].markers
     assert marker.post == "a_bay1"
-    assert (marker.x_m, marker.y_m) == pytest.approx((-0.35, 0.5))
+    assert (marker.x_m, marker.y_m) == pytest.approx((-0.35, 0.7))
 
 
 def test_the_marker_of_a_post_with_bays_is_read_before_its_crossing(campus):
-    (beside_a,), (beside_b,) = campus.post("a").markers, campus.post("b").markers
-    assert beside_a.x_m == pytest.approx(0.6)
-    assert beside_b.x_m == pytest.approx(4.7)
+    (from_b, *from_bays), (from_a,) = campus.post("a").markers, campus.post("b").markers
+    assert from_b.x_m == pytest.approx(0.6)
+    assert [(one.x_m, one.y_m) for one in from_bays] == [pytest.approx((0.35, 0.6)), pytest.approx((-0.6, 0.35))]
+    assert from_a.x_m == pytest.approx(4.7)
 
 
 def test_a_map_without_bays_is_its_own_track(write_map):
