@@ -164,6 +164,13 @@ class CampusMap:
         """On a track: the bays of a post, in the order of the file; none where robots stand on the post itself."""
         return self._bays.get(post, ())
 
+    def home_at(self, name: str | None) -> str | None:
+        """On a track: the home of that name or at that post; without a name the first dock of the map. None: none."""
+        if name is None:
+            return next((place.name for place in self.docks()), None)
+        homes = (place for place in self.posts.values() if place.dock or (place.homes and place.bay_of))
+        return next((place.name for place in homes if name in (place.name, place.bay_of)), None)
+
     @cached_property
     def _bays(self) -> Mapping[str, tuple[Post, ...]]:
         bays: dict[str, tuple[Post, ...]] = {}

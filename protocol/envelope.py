@@ -30,6 +30,7 @@ TO_SERVER: Final[Mapping[str, type[Part]]] = {
     "claim": to_server.Claim,
     "withdraw": to_server.Withdraw,
     "clear": to_server.Clear,
+    "occupancy": to_server.Occupancy,
     "why": to_server.Why,
     "insight": diagnostics.Diagnostics,
     **BOTH_WAYS,
@@ -56,7 +57,7 @@ YOUNGER: Final = ("confirm", "watch", "open_way", "detour", "revoke", "until_rat
 """What came later: types to robots and one field, sent only to those that name them in `hello`, since an older robot
 would hang up; and what a robot proves, which is expected of those that name it."""
 
-DURABLE: Final = frozenset({"event", "claim", "withdraw", "clear"}) | {
+DURABLE: Final = frozenset({"event", "claim", "withdraw", "clear", "occupancy"}) | {
     *("mission", "verifiers", "grant", "deny", "detour"),
     *("cancel", "confirm", "pause", "resume", "recall", "emergency_stop", "open_way", "revoke"),
 }

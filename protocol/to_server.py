@@ -203,6 +203,26 @@ class Clear(Part):
     post: PostName | None = None
 
 
+Where = Literal["bay", "crossing", "corridor"]
+Evidence = Literal["marker", "distance", "dock", "map"]
+
+
+class Occupancy(Part):
+    """I am wholly in this bay or corridor, or on this crossing, and out of what I was in before.
+
+    `post` is the bay, the post whose lines cross, or the end of the corridor that lies behind; then `towards` is the
+    other end. `evidence`: a marker that was read, the distance driven since the last one (`way_mm`), the contacts of a
+    dock, or the map alone where a marker cannot be read. Sent on maps with bays, for each place once.
+    """
+
+    where: Where
+    post: PostName
+    towards: PostName | None = None
+    evidence: Evidence
+    way_mm: int | None = Field(default=None, ge=0, le=10**7)
+    happened_at: Moment
+
+
 class Why(Part):
     """The robot's present activity and what it waits for, in words, from its agent's intentions."""
 

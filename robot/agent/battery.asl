@@ -17,7 +17,7 @@
      report_charge(charging).
 // No way leads to a dock: it stands where it blocks no other robot, and +nearest_dock begins again.
 +!charge
-  <- !reach_a_post;
+  <- !reach_a_stop;
      raise_fault(no_dock_open, "no way leads to any dock that is open").
 
 // The nearest dock that can be reached is another one now: a corridor was blocked, or is free again.
@@ -37,7 +37,10 @@
 // A person pulled the robot out of its dock.
 -docked : pursuing(charge) | pursuing(idle) | .desire(fill_up(_)) <- !decide_anew.
 
-+!fulfil(go_home) : home(Post)
-  <- !go_to(Post);
++!fulfil(go_home) : home(Place) & dockless
+  <- !go_to(Place);
+     release.
++!fulfil(go_home) : home(Place)
+  <- !go_to(Place);
      !dock;
      release.

@@ -22,8 +22,11 @@ purpose(hold)                   :- paused.
 purpose(mission(Id, Stop))      :- mission(Id, _) & next_stop(N) & stop(N, Stop, _, _, _, _).
 purpose(mission(Id, none))      :- mission(Id, _).   // all stops are done
 purpose(visit(Post))            :- errand(Post).
-purpose(go_home)                :- home(_) & not docked.
+purpose(go_home)                :- home(Place) & not at_rest(Place).
 purpose(idle).
+
+at_rest(_)     :- docked.
+at_rest(Place) :- at(Place) & dockless.
 
 // What happens is taken up in the same order: a stop does not queue behind the mail.
 priorities([safety, health, map]).
@@ -65,10 +68,10 @@ half_way(Purpose) :- (manoeuvring | handing_over) & Purpose \== stand_still.
      !!pursue(Purpose).
 
 // Some purposes last until a percept ends them.
-+!pursue(idle) <- release.   // it goes nowhere: others may
++!pursue(idle) <- !leave_crossing; release.   // it goes nowhere: others may
 +!pursue(stand_still).
 +!pursue(charge) <- !charge.
-+!pursue(hold) <- !reach_a_post; release.
++!pursue(hold) <- !reach_a_stop; release.
 // The others end by being fulfilled.
 +!pursue(Purpose)
   <- !fulfil(Purpose);

@@ -140,8 +140,9 @@ class Mind:
     def seen(self, now: float) -> Seen:
         """The moment as perception is shown it."""
         hands, navigator = self.hands, self.hands.navigator
+        crossing, at = navigator.crossing, navigator.at
         where = MapPosition(
-            navigator.at,
+            None if crossing else at,
             hands.missions.held.position.previous,
             navigator.destination,
             navigator.way(),
@@ -152,6 +153,8 @@ class Mind:
             navigator.beside_dock,
             navigator.closed.names,
             aside.to_post if (aside := detour(hands)) else None,
+            navigator.campus.post(at).bay_of if at else None,
+            crossing,
         )
         return Seen(
             at_s=now,
@@ -161,6 +164,8 @@ class Mind:
             held=hands.missions.held,
             halting=hands.view.faults & HALTING,
             home=navigator.home,
+            dockless=navigator.home is not None and navigator.campus.post(navigator.home).dock is None,
+            dock_bays=navigator.dock_places,
             nearest_dock=navigator.nearest_dock(),
             watch=int(now // WATCH_S),
             unsure=self.silence.lasts is True,

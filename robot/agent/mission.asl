@@ -22,9 +22,12 @@
 +!serve(_, _, Do, Order, _) : takes_out(Do) & not carrying(Order).   // the sender never came to load it
 +!serve(Stop, Post, Do, Order, Limit_s)
   <- report(departed, Stop);
-     !go_to(Post);
+     !go_to_stop(Post, Do);
      report(arrived, Stop);
      !attend(Do, Stop, Order, Limit_s).
+
++!go_to_stop(Post, dock) : dock_bay(Post, Bay) <- !go_to(Bay).
++!go_to_stop(Post, _) <- !go_to(Post).
 
 // A stop that cannot be served is told by name, and the mission goes on with the next one.
 -!serve(Stop, _, _, _, _)[reason(Why)] : hopeless(Why) <- report(gave_up, Stop, Why).

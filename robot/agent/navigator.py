@@ -12,11 +12,12 @@ from maps import CampusMap, NoRoute, corridor_name, shortest_route
 from maps.geometry import wrapped
 from protocol.parts import Leg
 from robot.agent.tracking import Tracker
+from robot.localization.bays import bay_for, places_to_stand
 from robot.localization.closed import Closed, open_way
 from robot.localization.directions import PLAIN_TURNS, Way, kept_from, next_post, sector
 from robot.localization.docks import nearest_dock, way_out
 from robot.localization.expected import wrong_corridor
-from robot.localization.place import AtPost, Between, Facing, Leaving, Unknown
+from robot.localization.place import AtPost, Between, Coming, Facing, Leaving, Unknown
 from robot.localization.remembering import Moment
 from robot.localization.steps import corridor_between, gone_astray, marked, turned_round
 from robot.mission.mission import MissionManager
@@ -108,7 +109,7 @@ class Navigator(Tracker):
         """
         if self.destination is None or self.at is None:
             return None
-        if self.at == self.destination:
+        if self.at in places_to_stand(self.campus, self.destination):
             return Way.ARRIVED
         towards = self._next_post()
         turn_rad = self._turn_to(towards) if towards else None
@@ -145,18 +146,64 @@ class Navigator(Tracker):
                 return post
         return self.here
 
+    @property
+    def reserves_from(self) -> str | None:
+        """The place from which it needs corridors: where it stands, or before which it waits."""
+        return self.waits_before or self.here
+
+    @property
+    def waits_before(self) -> str | None:
+        """The post with bays ahead of it in its corridor: what comes after that is what it asks for."""
+        place = self._place
+        ahead = place.towards if isinstance(place, Between | Coming) else None
+        return ahead if ahead and self.campus.bays_of(ahead) else None
+
+    def may_cross(self) -> bool:
+        """Return whether it may go on over the post ahead: into a corridor or a bay there. Any thread may ask."""
+        ahead, place = self.waits_before, self._place
+        behind = place.behind if isinstance(place, Between) else None
+        return ahead is None or self._duties.claims.may_leave(ahead, but_to=behind)
+
+    @property
+    def crossing(self) -> str | None:
+        """The post with bays on which it stands, where others drive."""
+        return self.at if self.at and self.campus.bays_of(self.at) else None
+
+    @property
+    def comes_out_of_a_bay(self) -> bool:
+        """Return whether it stands at a post that it came to from one of its bays: it has not come from elsewhere."""
+        place = self._place
+        spur = place.came_by if isinstance(place, AtPost) else None
+        return spur is not None and self.campus.post(spur.b).bay_of is not None
+
+    @property
+    def dock_places(self) -> dict[str, str]:
+        """The bay with the dock of each post that has bays."""
+        return {place.bay_of: place.name for place in self.campus.docks() if place.bay_of}
+
+    def bay_for(self, post: str) -> str:
+        """The place where it stands for a post."""
+        if self.at in places_to_stand(self.campus, post):
+            return self.at or post
+        return bay_for(self.campus, post, self.home, self._duties.held.grants, self._avoided())
+
     def legs_to(self, *posts: str) -> tuple[Leg, ...]:
-        """The corridors from here to each of these posts in turn. Raises NoRoute."""
-        way: list[str] = [self.here] if self.here else []
+        """The corridors from here to where it stands for each of these posts in turn. Raises NoRoute."""
+        way: list[str] = [self.reserves_from] if self.reserves_from else []
         for post in posts if way else ():
-            way += shortest_route(self.campus, way[-1], post, self._avoided()).posts[1:]
+            if way[-1] not in places_to_stand(self.campus, post):
+                way += shortest_route(self.campus, way[-1], self.bay_for(post), self._avoided()).posts[1:]
         return tuple(Leg(from_post=a, to_post=b) for a, b in pairwise(way))
 
     def first_legs(self, goal: str) -> tuple[Leg, ...]:
         """The corridors that it may be in next on the way to a post: every one here while it does not know which way it
-        looks. All markers of a post carry the same text, so after a lift only the next post tells. Raises NoRoute."""
-        first = self.legs_to(goal)[:1]
-        if not first or self._facing is not None:
+        looks. All markers of a post carry the same text, so after a lift only the next post tells. Out of a bay it goes
+        only together with what comes after the crossing. Raises NoRoute."""
+        legs = self.legs_to(goal)
+        if legs and self.campus.post(legs[0].from_post).bay_of:
+            return legs[:2]
+        first = legs[:1]
+        if not first or self._facing is not None or self.at is None:
             return first
         here = first[0].from_post
         return tuple(Leg(from_post=here, to_post=post.name) for post, _ in self.campus.neighbours(here))
@@ -185,7 +232,7 @@ class Navigator(Tracker):
     def _next_post(self) -> str | None:
         with suppress(NoRoute):
             if self.destination is not None and self.at is not None:
-                return next_post(self.campus, self.at, self.destination, self._not_next())
+                return next_post(self.campus, self.at, self.bay_for(self.destination), self._not_next())
         return None
 
     @property

@@ -10,6 +10,7 @@ from protocol.parts import Leg
 from robot.drivers.interfaces import Odometry, Sighting
 from robot.localization.approach import is_aslant, post_ahead_mm
 from robot.localization.astray import FROM_MM, TO_MM, Compass, really_towards
+from robot.localization.bays import evidence_of, occupied
 from robot.localization.by_fixes import near_dock
 from robot.localization.directions import turn_towards_rad
 from robot.localization.docks import dock_post
@@ -104,10 +105,18 @@ class Tracker:
         post = self._new_marker(view)
         if view.base and view.base.docked:
             self._stand_in_dock(view)
+            self._report_occupied()
         elif LIFTED in view.faults:
             self._lift(view)
         else:
             self._drive(view, post)
+            self._report_occupied()
+
+    def _report_occupied(self) -> None:
+        """Others may have what it is wholly out of."""
+        here_mm = self._odometry.ahead_mm
+        if now := occupied(self.campus, self._place, here_mm):
+            self._duties.occupies(now.where, now.post, now.towards, *evidence_of(self._place, here_mm))
 
     def _new_marker(self, view: View) -> Sighting | None:
         """The marker that it has read since the last look, unless from aslant."""
@@ -171,6 +180,7 @@ class Tracker:
         self._facing = self._foreign = None
         self._seen_at_s = view.post.at_s if view.post else self._seen_at_s
         self._compass.set(None, view.odometry)
+        self._duties.occupancy.forget()
 
     # Markers.
 

@@ -1,5 +1,6 @@
 // From post to post. `at(Post)` holds from a post's marker until the robot follows the line again; between posts nothing
-// of the kind is believed: the robot is seen at posts, not tracked.
+// of the kind is believed: the robot is seen at posts, not tracked. Where a post has bays, `at(Post)` holds in its bays
+// alone, and on the post itself `crossing(Post)`: there it only passes.
 
 +!go_to(Post) : at(Post) <- .abolish(patience(_)).
 +!go_to(Post) : docked
@@ -8,8 +9,9 @@
      !come_out;
      !go_to(Post).
 +!go_to(Post) : beside_dock & not no_way_in <- !go_back_in; !go_to(Post).
-+!go_to(Post) : not at(_)
-  <- !reach_a_post;
++!go_to(Post) : not at(_) & not crossing(_)
+  <- set_destination(Post);
+     !reach_a_post;
      !tell_passed(Post);
      !go_to(Post).
 +!go_to(Post)
@@ -63,11 +65,16 @@
 -!leave(_) <- !search.   // it turned and found no line
 
 // After a restart or an interruption between two posts: drive on, the next marker tells.
-+!reach_a_post : at(_).
++!reach_a_post : at(_) | crossing(_).
 +!reach_a_post : docked.
 +!reach_a_post : doubted(_) <- !look_back; !reach_a_post.
 +!reach_a_post : astray(_) <- turn(behind); !follow.
 +!reach_a_post <- !follow.
+
+// To where it may stand: on a crossing it is in the way of others.
++!reach_a_stop <- !reach_a_post; !leave_crossing.
++!leave_crossing : crossing(Post) <- !go_to(Post).
++!leave_crossing.
 
 // Switched off just before a post, it may have passed it, and stand in a corridor that it was not granted. It goes back a
 // little for the marker. Without one it stands until a person puts it down where it can read one, or in a dock.
@@ -80,6 +87,7 @@
 +!follow <- !follow(1).
 +!follow(_) <- follow_line; clear_fault(stuck).
 -!follow(_) : docked.   // it was put off docking at the last moment, and is in the dock: a post like any other
+-!follow(_)[reason(must_wait)] <- !cross; !follow.
 -!follow(_)[reason(Why)] : closes_the_way(Why) <- !go_back(Why).
 -!follow(_)[reason(not_granted)] <- turn(behind); !follow.   // it was pushed, or overran the post
 -!follow(Try) : Try <= 3
@@ -87,6 +95,10 @@
      !search;
      !follow(Try + 1).
 -!follow(Try)[error_msg(Why)] <- !wait_for_help(Why); !follow(Try).
+
+// It stands before a crossing that others have. Where no way on is open, and no bay either, it tries again.
++!cross <- wait_to_cross.
+-!cross <- rest(15); !cross.
 
 // Three bumps, a virtual wall, no marker where the post should be: the corridor counts as closed for a while. Back to the
 // post the robot came from, and round it if there is a way.
@@ -116,6 +128,6 @@ closes_the_way(post_missed).
 // It has gone into another corridor than the one it was granted: back at once.
 +astray(_) <- !decide_anew.
 
-+!tell_passed(Post) : at(Post).
++!tell_passed(Post) : at(Post) | crossing(Post).
 +!tell_passed(_) : pursuing(mission(_, _)) & next_stop(N) & stop(N, Stop, _, _, _, _) <- report(passed, Stop).
 +!tell_passed(_).

@@ -26,10 +26,21 @@ from protocol.to_robot import (
     Revoke,
     Verifiers,
 )
-from protocol.to_server import Charge, CommandAnswer, Event, Fault, HandoverReceipt, Progress, Step
+from protocol.to_server import (
+    Charge,
+    CommandAnswer,
+    Event,
+    Evidence,
+    Fault,
+    HandoverReceipt,
+    Progress,
+    Step,
+    Where,
+)
 from robot.core.errors import RobotError
 from robot.mission.custody import Custody, Proof, Sign, opening
 from robot.mission.memory import Memory
+from robot.mission.occupancy import OccupancyReports
 from robot.mission.outbox import Outbox
 from robot.mission.reservations import Claims
 from robot.mission.returns import is_own, return_mission
@@ -62,6 +73,7 @@ class MissionManager:
         self._store, self.memory, self.outbox, self.utc = store, memory, outbox, utc
         self._server, self._mailroom = server, mailroom
         self.custody = Custody(memory, outbox, utc, sign)
+        self.occupancy = OccupancyReports(store, outbox, utc)
         self.rearm_asked = False
         """A dispatcher has looked, and lets a stopped robot go again; the mind passes it on."""
         self.stop_asked = False
@@ -172,6 +184,7 @@ class MissionManager:
 
     def _revoke(self, wish: Revoke) -> None:
         self.memory.revoke()
+        self.occupancy.forget()
         self.claims.void()
         self.rearm_asked, self.stop_asked, self.forget_place_asked = False, True, True
         self._begin_fault(
@@ -350,6 +363,11 @@ class MissionManager:
         """The robot stands at a marker: remembered at once, since after a power cut nothing else tells where it is."""
         self.memory.see(post, self.utc())
         self._changed()
+
+    def occupies(self, where: Where, post: str, towards: str | None, evidence: Evidence, way_mm: int | None) -> None:
+        """The robot is wholly there: others may have what it was in before."""
+        if self.occupancy.report(where, post, towards, evidence, way_mm):
+            self._told()
 
     def closed_ages_s(self) -> dict[str, float]:
         """The corridors in which it turned back, by name, and how long ago; just now if the clock was put back."""

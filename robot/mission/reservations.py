@@ -37,6 +37,11 @@ class Claims:
     def may_enter(self, legs: Sequence[Leg]) -> bool:
         return self.alone or all(leg in self._held().grants for leg in legs)
 
+    def may_leave(self, post: str, but_to: str | None) -> bool:
+        """Return whether it was granted a way on from this post, other than back where it comes from. Any thread may
+        ask."""
+        return self.alone or any(leg.from_post == post and leg.to_post != but_to for leg in self._held().grants)
+
     def may_be_in(self, leg: Leg) -> bool:
         """No other robot is let into a corridor that it was granted, whichever way it goes in there."""
         return self.alone or any(

@@ -151,15 +151,15 @@ def _make_folder(path: Path) -> None:
 
 
 def _home(settings: Settings, campus: CampusMap) -> str | None:
-    if settings.home is None:
-        return next((post.name for post in campus.docks()), None)
-    if settings.home not in campus.posts:
-        posts = ", ".join(campus.posts)
-        raise ConfigError("settings", "home", f"map {campus.name} has no post {settings.home}", f"Posts: {posts}.")
-    if campus.posts[settings.home].dock is None:
-        docks = ", ".join(post.name for post in campus.docks()) or "none"
+    """The place on the track where it rests: a bay, or a post that has a dock."""
+    home, track = campus.track.home_at(settings.home), campus.track
+    if home is None and settings.home is not None:
+        if settings.home not in track.posts:
+            posts = ", ".join(campus.posts)
+            raise ConfigError("settings", "home", f"map {campus.name} has no post {settings.home}", f"Posts: {posts}.")
+        docks = ", ".join(place.name for place in track.docks()) or "none"
         raise ConfigError("settings", "home", f"{settings.home} has no dock on map {campus.name}", f"Docks: {docks}.")
-    return settings.home
+    return home
 
 
 def _mailroom(settings: Settings, campus: CampusMap) -> str | None:
@@ -266,13 +266,14 @@ def join(
         black_box,
         (DockInfrared(devices.base),),
     )
-    navigator = Navigator(campus, _home(settings, campus), missions, now)
+    track = campus.track
+    navigator = Navigator(track, _home(settings, campus), missions, now)
     hands = Hands(drive, navigator, missions, settings.drive.cruise_mm_s, settings.drive.turn_mm_s, shape)
     mode = percept_mode(settings)
     mind = Mind(Agent(program, name=settings.name), Actions(hands, table_for(mode)), hands, settings, mode)
     mind.note = black_box.note
     tags = tag_numbers(campus) if settings.camera.april_tags else None
-    reader = MarkerReader(campus.posts, Optics(settings.camera.field_of_view_deg), shape, tags=tags)
+    reader = MarkerReader(track.posts, Optics(settings.camera.field_of_view_deg), shape, tags=tags)
     watch = MarkerWatch(devices.camera, reader, now)
     body = BodyWatch(HostWatch(devices.host), stops, black_box)
     daemon = Daemon(devices.base, drive, watch, mind, settings.rates, body, devices.world)

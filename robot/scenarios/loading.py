@@ -99,7 +99,7 @@ def _robots(scenario: Scenario, campus: CampusMap) -> Iterator[Complaint]:
             start_pose(campus, robot.start)
         except SimulatedWorldError as error:
             yield "robot.start", str(error), ""
-        if robot.home is not None and (robot.home not in campus.posts or campus.posts[robot.home].dock is None):
+        if robot.home is not None and campus.track.home_at(robot.home) is None:
             docks = ", ".join(post.name for post in campus.docks()) or "none"
             yield "robot.home", f"{robot.home} is no post with a dock", f"There are: {docks}."
 

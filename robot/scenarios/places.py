@@ -23,19 +23,19 @@ def is_in(place: Place, campus: CampusMap, x_m: float, y_m: float) -> bool:
     return place.at is None or math.dist(place.at, (x_m, y_m)) <= place.radius_m
 
 
-def post_at(campus: CampusMap, x_m: float, y_m: float, within_m: float = AT_POST_M) -> str | None:
-    """The post at which a person at this spot stands."""
-    near = [(math.dist(post.point, (x_m, y_m)), post.name) for post in campus.posts.values()]
+def post_at(track: CampusMap, x_m: float, y_m: float, within_m: float = AT_POST_M) -> str | None:
+    """The post or bay at which a person at this spot stands."""
+    near = [(math.dist(post.point, (x_m, y_m)), post.name) for post in track.posts.values()]
     distance_m, name = min(near)
     return name if distance_m <= within_m else None
 
 
-def corridor_at(campus: CampusMap, x_m: float, y_m: float) -> str | None:
-    """The corridor in which a robot at this spot is; None at posts, in docks and away from every tape."""
-    if post_at(campus, x_m, y_m, POST_ROOM_M):
+def corridor_at(track: CampusMap, x_m: float, y_m: float) -> str | None:
+    """The corridor or spur in which a robot at this spot is; None at posts, in docks and away from every tape."""
+    if post_at(track, x_m, y_m, POST_ROOM_M):
         return None
     here = Point(x_m, y_m)
-    near = [(distance_to_path_m(here, one.tape), one.name) for one in campus.corridors]
+    near = [(distance_to_path_m(here, one.tape), one.name) for one in track.corridors]
     distance_m, name = min(near)
     return name if distance_m <= IN_CORRIDOR_M else None
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from random import Random
 from typing import Final
 
-from maps import CampusMap
 from protocol.clock import SteppedClock
 from robot.core.config import ConfigError, Settings, load_settings
 from robot.ops.assembly import Parts, Simulation, assemble
@@ -54,8 +53,9 @@ class Stage:
         self._quiet_since_s: float | None = None
         self._dark = [(row, row.darkness) for row in scenario.dark]
         with ExitStack() as closing:
-            homes = {row.name: row.home or _first_dock(self.campus) for row in scenario.robot}
-            self.service = StandIn(self.campus, self.clock, self.letters, homes)
+            track = self.campus.track
+            homes = {row.name: track.home_at(row.home) for row in scenario.robot}
+            self.service = StandIn(track, self.clock, self.letters, homes)
             self.actors: list[Actor] = []
             for number, row in enumerate(scenario.robot):
                 actor = self._actor(number, row, data)
@@ -64,7 +64,7 @@ class Stage:
             self._closing = closing.pop_all()
         self.handings = handings(self.letters.values(), scenario.seed)
         self.crowd = Crowd(self.campus, scenario.walker, scenario.stander)
-        self.watch = Watch(self.campus, self.service)
+        self.watch = Watch(track, self.service)
         self.happenings = Happenings(self.campus, self.service, lambda who, what: self.say(self.clock.now(), who, what))
         self.happenings.add(scenario, self.actors)
         self._told = 0
@@ -169,7 +169,7 @@ class Stage:
         self.crowd.tick(self.actors, now)
         self.world.obstacles[:] = self.crowd.present
         for actor in self.actors:
-            actor.look(self.campus, now)
+            actor.look(self.campus.track, now)
             self._darken(actor)
             for one in self.handings:
                 one.tick(actor, now)
@@ -226,7 +226,3 @@ def _rests(actor: Actor) -> bool:
     """In its dock, with nothing to do; or where no dock is."""
     mind = actor.parts.mind
     return mind.is_quiet and (actor.body.docked or mind.hands.navigator.home is None)
-
-
-def _first_dock(campus: CampusMap) -> str | None:
-    return next((post.name for post in campus.docks()), None)

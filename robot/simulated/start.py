@@ -1,9 +1,9 @@
-"""Where a simulated robot begins: `dock`, a post (just arrived, its marker in view) or POST:TOWARDS."""
+"""Where a simulated robot begins: `dock`, a post or bay (just arrived, its marker in view) or POST:TOWARDS."""
 
 from dataclasses import dataclass
 
-from maps import CampusMap, UnknownPost
-from maps.bays import MARKER_BEFORE_PLACE_M
+from maps import CampusMap, Post, UnknownPost
+from maps.bays import MARKER_BEFORE_BAY_M, MARKER_BEFORE_CROSSING_M, MARKER_BEFORE_PLACE_M
 from maps.errors import UnknownCorridor
 from maps.geometry import moved
 from robot.simulated.errors import UnknownStart
@@ -25,31 +25,39 @@ def start_pose(campus: CampusMap, start: str) -> Pose:
     the camera, on the way in from its first neighbour. POST:TOWARDS stands at the post, looking along that corridor.
     """
     where, _, towards = start.partition(":")
+    track = campus.track
     try:
         if where == "dock":
-            return _docked(campus, start, towards)
-        return _leaving(campus, where, towards) if towards else _arrived(campus, where)
+            return _docked(track, start, towards)
+        return _leaving(track, where, towards) if towards else _arrived(track, where)
     except (UnknownPost, UnknownCorridor) as error:
         raise UnknownStart(start, str(error)) from error
 
 
-def _docked(campus: CampusMap, start: str, post: str) -> Pose:
-    docks = campus.docks() if not post else (campus.post(post),)
+def _docked(track: CampusMap, start: str, post: str) -> Pose:
+    docks = [place for place in track.docks() if not post or post in (place.name, place.bay_of)]
     if not docks or not docks[0].dock:
-        raise UnknownStart(start, f"{post or campus.name} has no dock")
+        track.post(post or next(iter(track.posts)))
+        raise UnknownStart(start, f"{post or track.name} has no dock")
     dock = docks[0].dock
     return Pose(dock.x_m, dock.y_m, dock.heading_rad)
 
 
-def _arrived(campus: CampusMap, name: str) -> Pose:
-    post = campus.post(name)
-    ways = campus.neighbours(name)
+def _arrived(track: CampusMap, name: str) -> Pose:
+    place = track.post(name)
+    ways = track.neighbours(name)
     if not ways:
         raise UnknownStart(name, "no corridor leads there")
     heading = ways[0][1].heading_arriving(name)
-    return Pose(*moved(post.point, heading, -MARKER_BEFORE_PLACE_M), heading)
+    return Pose(*moved(place.point, heading, -_marker_before_m(track, place)), heading)
 
 
-def _leaving(campus: CampusMap, name: str, towards: str) -> Pose:
-    post = campus.post(name)
-    return Pose(post.x_m, post.y_m, campus.corridor(name, towards).heading_leaving(name))
+def _marker_before_m(track: CampusMap, place: Post) -> float:
+    if place.bay_of:
+        return MARKER_BEFORE_BAY_M
+    return MARKER_BEFORE_CROSSING_M if track.bays_of(place.name) else MARKER_BEFORE_PLACE_M
+
+
+def _leaving(track: CampusMap, name: str, towards: str) -> Pose:
+    post = track.post(name)
+    return Pose(post.x_m, post.y_m, track.corridor(name, towards).heading_leaving(name))

@@ -28,6 +28,7 @@ ENDS: Final = (
             "post_missed": "the corridor is over, no marker was read, and which post it is is not known",
             "blocked": "three bumps",
             "docked": "it stands in a dock",
+            "must_wait": "it stands before a post with bays and has been granted no way on from there",
             "timeout": "no post in time",
         },
     ),

@@ -4,9 +4,11 @@ Fifty times a second: where is the line (line_estimate.py), which curve leads ba
 """
 
 import math
+from collections.abc import Callable
 from typing import ClassVar
 
 from maps import CampusMap
+from maps.bays import WAITS_BEFORE_CROSSING_M
 from robot.drivers.interfaces import STOP, BodyShape, WheelSpeeds
 from robot.localization.expected import Expected
 from robot.skills.find_line import FindLine, over_line
@@ -45,8 +47,12 @@ BRANCH_MM = 40.0
 """No branch is wider; what darkens an outer diode for longer is the line itself."""
 
 
+WAITS_BEFORE_MM = 1000 * WAITS_BEFORE_CROSSING_M
+
+
 class FollowLine:
-    """Done(post), the axle at the post; line_lost, post_missed, blocked (three bumps), docked, timeout."""
+    """Done(post), the axle at the post; line_lost, post_missed, blocked (three bumps), docked, timeout; must_wait: it
+    stands before a crossing that it may not enter."""
 
     name: ClassVar[str] = "follow_line"
     moves: ClassVar[bool] = True
@@ -64,17 +70,18 @@ class FollowLine:
         unread: bool = False,
         sighted: tuple[str, float] | None = None,
         expected: Expected | None = None,
+        may_cross: Callable[[], bool] = lambda: True,
     ) -> None:
         """`leaving`: the post it sets out from, if known: it tells which marker the next post will show.
         `way_left_mm`: how far the next post is by the map, if known; `ahead`: which one that is. With both, a post
         whose marker cannot be read is reached by map and wheels; `unread`: it could not be read the last time.
         `sighted`: the post whose marker has been seen already, and where it is by odometry's `ahead_mm`. `expected`:
-        which markers may come next; at any other it drives by."""
+        which markers may come next; at any other it drives by. `may_cross`: whether it may drive on to the post."""
         self._campus, self._leaving, self._cruise_mm_s = campus, leaving, cruise_mm_s
         self._shape = shape or BodyShape()
         self._gains = gains(self._shape.sensor_lead_mm)
         self._way_left_mm, self._ahead, self._is_unread = way_left_mm, ahead, unread
-        self._sighted, self._expected = sighted, expected
+        self._sighted, self._expected, self._may_cross = sighted, expected, may_cross
         self.limit_s = limit_s
 
     def start(self, view: View, now: float) -> None:
@@ -109,6 +116,9 @@ class FollowLine:
             return self._searched(self._search, view, now)
         to_go_mm = self._post.to_go_mm(view.odometry)
         self._look_at_line(view, to_go_mm)
+        room_mm = None if self._may_cross() else self._to_waiting_point_mm(view, to_go_mm)
+        if room_mm is not None and room_mm <= CRAWL_MM_S * WHEEL_LAG_S:
+            return Failed("must_wait") if view.sent.still else Running(STOP)
         if to_go_mm is not None and to_go_mm <= CRAWL_MM_S * WHEEL_LAG_S:
             return self._stop(view, to_go_mm)
         self._standing_since_s = None
@@ -118,7 +128,14 @@ class FollowLine:
             missed = self._may_be_at_post(view) and not self._post.supposed
             return self._missed(view) if missed else self._lost(view, now)
         wanted_mm_s = self._cruise_mm_s if to_go_mm is not None else self._looking_mm_s(view)
-        return Running(self._speeds(to_go_mm, min(wanted_mm_s, most_mm_s(view))))
+        return Running(self._speeds(to_go_mm if room_mm is None else room_mm, min(wanted_mm_s, most_mm_s(view))))
+
+    def _to_waiting_point_mm(self, view: View, to_go_mm: float | None) -> float | None:
+        """By the marker of the post; before it is read so early that the post cannot be nearer than that."""
+        if to_go_mm is not None:
+            return to_go_mm - WAITS_BEFORE_MM
+        beyond_mm = self._unread.beyond_mm(view.odometry) + self._unread.doubt_mm
+        return None if beyond_mm == -math.inf else -beyond_mm - WAITS_BEFORE_MM
 
     # The post
 

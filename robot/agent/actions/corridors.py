@@ -1,6 +1,7 @@
 """Knowing the way and being allowed to take it: what the actions about routes, grants and closed corridors do."""
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from typing import Final
 
 from maps import NoRoute, corridor_name, shortest_route
@@ -95,8 +96,8 @@ def _granted_ahead(hands: Hands, way: Sequence[Leg]) -> Iterator[Leg]:
 
 def detour(hands: Hands) -> Leg | None:
     """The corridor from here that it has to take first, unless the robot knows that to be closed."""
-    leg = hands.missions.held.detour
-    if leg is None or leg.from_post != hands.navigator.at:
+    leg, navigator = hands.missions.held.detour, hands.navigator
+    if leg is None or leg.from_post not in (navigator.at, navigator.waits_before):
         return None
     return None if _is_closed(hands, leg) else leg
 
@@ -132,6 +133,44 @@ def _kept(hands: Hands) -> tuple[Leg, ...]:
     without network there
     it would never be granted anything again."""
     return () if hands.missions.claims.avoid else hands.missions.held.grants
+
+
+class AskAhead:
+    """On the way to a post with bays: ask for what comes after it, once for each way that it would take."""
+
+    def __init__(self, hands: Hands) -> None:
+        self._hands = hands
+        self._asked: tuple[Leg, ...] = ()
+
+    def __call__(self) -> None:
+        navigator, goal = self._hands.navigator, self._hands.navigator.destination
+        if navigator.waits_before is None or navigator.may_cross():
+            return
+        with suppress(NoRoute):
+            legs = navigator.legs_to(goal or navigator.waits_before)
+            if legs != self._asked:
+                self._asked = legs
+                self._hands.missions.claims.ask(legs, goal)
+
+
+def wait_to_cross(hands: Hands, _: Sequence[Value], __: float) -> Run:
+    """Done when it may drive on: over the post, into a bay there, or where the service sends it."""
+    navigator, claims = hands.navigator, hands.missions.claims
+    goals = [goal for goal in (navigator.destination, navigator.waits_before) if goal]
+    claim_id: str | None = None
+
+    def ask() -> Ended | None:
+        nonlocal claim_id
+        if navigator.may_cross():
+            return DONE
+        if claim_id and claims.denial(claim_id) and len(goals) > 1:
+            del goals[0]
+        if _why_no_way(hands, goals[0]) is not None:
+            return Ended("way_closed")
+        claim_id = claims.ask(navigator.legs_to(goals[0]), goals[0])
+        return None
+
+    return Wait(ask, dropped=claims.withdraw)
 
 
 def release(hands: Hands, _: Sequence[Value], __: float) -> Run:

@@ -31,8 +31,9 @@ class Hands:
 
     @property
     def place(self) -> str | None:
-        """The post to name in a report: where the robot stands, or the last one it has seen."""
-        return self.navigator.here
+        """The post to name in a report: where the robot stands, or the last one it has seen; of a bay its post."""
+        here = self.navigator.here
+        return None if here is None else self.navigator.campus.address_of(here)
 
     def lose_place(self, error: CampusMapError) -> None:
         """An error of the map that was not foreseen: where the robot believed to be cannot be."""

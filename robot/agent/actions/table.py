@@ -12,12 +12,14 @@ from protocol.to_server import Step
 from robot.agent.actions.arguments import Argument, Kind, Value, word
 from robot.agent.actions.corridors import (
     CLOSED_BY,
+    AskAhead,
     claim,
     mark_blocked,
     noted_move,
     release,
     reopen,
     set_destination,
+    wait_to_cross,
 )
 from robot.agent.actions.hands import PLACE_UNKNOWN, Hands
 from robot.agent.actions.runs import AtOnce, Ended, Meanwhile, Rest, Run, SkillMaker, Skills, ThenRest, Unless
@@ -92,9 +94,11 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
             ahead in navigator.unread,
             navigator.sighted,
             navigator.expected(),
+            navigator.may_cross,
         )
 
-    return Skills(hands.body, [straighten, follow], now, lambda done: navigator.reached(done.result, done.unread))
+    run = Skills(hands.body, [straighten, follow], now, lambda done: navigator.reached(done.result, done.unread))
+    return Meanwhile(run, AskAhead(hands))
 
 
 def _look_back(hands: Hands, _: Sequence[Value], now: float) -> Run:
@@ -142,6 +146,8 @@ def _station(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
 
 
 def _report(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
+    if arguments[0] == Step.PASSED and hands.navigator.comes_out_of_a_bay:
+        return AtOnce()
     hands.report(Step(str(arguments[0])), str(arguments[1]), str(arguments[2]) if len(arguments) > 2 else None)
     return AtOnce()
 
@@ -227,7 +233,8 @@ ACTIONS: Final = (
     Action(
         "follow_line",
         (),
-        "follow the line to the next marker; fails with not_granted in a corridor that it came into ungranted",
+        "follow the line to the next marker; fails with not_granted in a corridor that it came into ungranted, with "
+        "must_wait before a post with bays where it has been granted no way on",
         _follow_line,
     ),
     Action("look_back", (), "back a little, until the marker of the post ahead is read", _look_back),
@@ -242,6 +249,12 @@ ACTIONS: Final = (
         "ask for the corridors to a post, give back all others that the service can be told of; done when the first "
         "may be entered, or when `detour` holds; fails with denied, way_closed, no_route",
         claim,
+    ),
+    Action(
+        "wait_to_cross",
+        (),
+        "ask for the way on from the post ahead, or else for a bay there; done when it may drive on",
+        wait_to_cross,
     ),
     Action(
         "release", (), "give back every corridor that was granted, but for the one it is in, and wait for none", release

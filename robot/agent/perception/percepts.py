@@ -76,7 +76,11 @@ def _charging(seen: Seen) -> Terms:
 
 
 def _at(seen: Seen) -> Terms:
-    return [f"at({seen.where.at})"] if seen.where.at else []
+    return (f"at({place})" for place in (seen.where.at, seen.where.bay_of) if place)
+
+
+def _home(seen: Seen) -> Terms:
+    return [f"home({seen.home})"] if seen.home else []
 
 
 def _stops(seen: Seen) -> Terms:
@@ -120,7 +124,21 @@ PERCEPTS: Final = (
     Percept("direction", "direction(Destination, forward|left|right|behind|arrived)", _direction, drained=True),
     Percept("docked", "the charging contacts of a dock are under power", _docked, _base_age_s),
     Percept("charging_dock", "the dock is charging the battery", _charging, _base_age_s),
-    Percept("at", "at(Post): it stands at this post, until it leaves along the line", _at),
+    Percept(
+        "at",
+        "at(Post): it stands at this post, until it leaves along the line; in a bay, both at the bay and at its post",
+        _at,
+    ),
+    Percept(
+        "crossing",
+        "crossing(Post): it is on a post that has bays, where others drive: no place to stand",
+        lambda s: [f"crossing({s.where.crossing})"] if s.where.crossing else [],
+    ),
+    Percept(
+        "dock_bay",
+        "dock_bay(Post, Bay): the bay of this post that has the dock",
+        lambda s: (f"dock_bay({post},{bay})" for post, bay in s.dock_bays.items()),
+    ),
     Percept(
         "moved",
         "moved(Post): a person has moved it, and it found itself at this post; until noted_move",
@@ -201,7 +219,8 @@ PERCEPTS: Final = (
         lambda s: (f"cancelled({atom_or_text(order)})" for order in s.held.cancelled),
     ),
     Percept("paused", "the server asked to wait at the next post", lambda s: ["paused"] if s.held.paused else []),
-    Percept("home", "home(Post): where its own dock is", lambda s: [f"home({s.home})"] if s.home else []),
+    Percept("home", "home(Place): where it rests: the bay or the post of its own dock, or a bay without one", _home),
+    Percept("dockless", "there is no dock at its home", lambda s: ["dockless"] if s.dockless else []),
     Percept(
         "nearest_dock",
         "nearest_dock(Post): by the map, from where it was last seen; none where no way to a dock is open",

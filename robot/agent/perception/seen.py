@@ -1,5 +1,6 @@
 """Everything perception decides by, at one moment."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from robot.agent.perception.battery import BatterySense
@@ -9,9 +10,10 @@ from robot.skills.interfaces import View
 
 @dataclass(frozen=True)
 class MapPosition:
-    """Where the robot is, in words of the map. `at` is the post it stands at; between posts it is None."""
+    """Where the robot is, in words of the map. Between posts `at` is None."""
 
     at: str | None = None
+    """The bay, or the post itself where that has none."""
     previous: str | None = None
     destination: str | None = None
     way: str | None = None
@@ -30,6 +32,10 @@ class MapPosition:
     """Corridors, by name, in which it turned back a short while ago."""
     detour: str | None = None
     """The neighbour to which the service sends it first."""
+    bay_of: str | None = None
+    """The post of the bay where it stands."""
+    crossing: str | None = None
+    """The post with bays that it is on its way across."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +50,10 @@ class Seen:
     halting: frozenset[str] = field(default_factory=frozenset)
     """Those of the active faults that keep the wheels still until a person has seen to them."""
     home: str | None = None
+    dockless: bool = False
+    """There is no dock at its home."""
+    dock_bays: Mapping[str, str] = field(default_factory=dict)
+    """The bay with the dock, by post."""
     nearest_dock: str | None = None
     unsure: bool = False
     handing_over: bool = False

@@ -41,13 +41,13 @@ class Actor:
     def name(self) -> str:
         return self.row.name
 
-    def look(self, campus: CampusMap, now: float) -> None:
+    def look(self, track: CampusMap, now: float) -> None:
         pose = self.body.pose
         # In its dock it is at the dock's post for everybody who has a letter for it.
-        post = post_at(campus, pose.x_m, pose.y_m, AT_DOCK_M if self.body.docked else AT_POST_M)
-        if post and post != self.post and (not self.posts or self.posts[-1][1] != post):
-            self.posts.append((now, post))
-        self.post = post
+        place = post_at(track, pose.x_m, pose.y_m, AT_DOCK_M if self.body.docked else AT_POST_M)
+        if place and (not self.posts or self.posts[-1][1] != place):
+            self.posts.append((now, place))
+        post = self.post = place and (None if track.bays_of(place) else track.address_of(place))
         # Put down on a post it has the marker behind it: only the one that it comes to, or a dock, tells it anything.
         self._put_down = self._put_down and post is not None and not self.body.docked
         self.carried = self.carried and (post is None or self._put_down)

@@ -26,6 +26,7 @@ from protocol.to_server import (
     Fault,
     HandoverReceipt,
     Hello,
+    Occupancy,
     Progress,
     Snapshot,
     Step,
@@ -66,6 +67,8 @@ class Session:
     faults: dict[str, str] = field(default_factory=dict)
     """Told and not over, with their reasons."""
     errors: list[str] = field(default_factory=list)
+    occupies: Occupancy | None = None
+    """Its last word on the bay, crossing or corridor that it is wholly in."""
 
 
 class StandIn:
@@ -201,6 +204,8 @@ class StandIn:
                 self.interlocking.claim(Claimed(session.robot, message.claim_id, message.legs))
             case Clear():
                 self.interlocking.clear(session.robot, message.leg)
+            case Occupancy():
+                session.occupies = message
             case Event():
                 self._happened(session, message)
 

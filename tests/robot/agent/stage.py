@@ -9,7 +9,8 @@ from robot.ops.assembly import OUR_PROGRAM
 
 PROGRAM = parse_program(OUR_PROGRAM.read_text("utf-8"), source=str(OUR_PROGRAM))
 SOON = 40
-AT_ONCE = ("clear_fault", "release")
+AT_ONCE = ("clear_fault", "release", "set_destination")
+TO_NOWHERE = "set_destination(nowhere)"
 
 
 class Stage:
@@ -38,7 +39,7 @@ class Stage:
             del self.waiting[names[id_]]
         for action in outcome.actions:
             self.waiting[str(action.term)] = action.id
-            if action.term.functor in AT_ONCE:
+            if action.term.functor in AT_ONCE and str(action.term) != TO_NOWHERE:
                 self.succeeds(str(action.term))
                 self._at_once.append(str(action.term))
         self.failures += map(str, outcome.failures)

@@ -145,7 +145,7 @@ def test_a_recall_without_mail_sends_it_home(moment: object) -> None:
     if "docked" in stage.percepts:
         assert stage.waiting == {}
     else:
-        stage.expect("set_destination(post5)" if moment is waiting_for_the_sender else "follow_line")
+        stage.expect("claim(post5)" if moment is waiting_for_the_sender else "follow_line")
 
 
 def test_a_recall_with_mail_aboard_takes_it_back_first() -> None:
