@@ -306,7 +306,9 @@ class Navigator(Tracker):
         map alone."""
         if post is None:
             return
-        self._note_marker(post, unread)
+        # Back at the post that it left it may have turned round beyond the marker.
+        if not (isinstance(self._place, Between) and self._place.turned_round):
+            self._note_marker(post, unread)
         place, now_mm = self._place, self._odometry.ahead_mm
         if self.at == post:
             return

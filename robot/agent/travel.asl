@@ -37,6 +37,7 @@
 -!permission(Post, Patience_s)[reason(denied)] <- rest(15); !permission(Post, Patience_s).
 -!permission(Post, Patience_s)[reason(way_closed)]
   <- raise_fault(no_way, "every way is blocked or denied");
+     !stand_aside(Post);
      !wait_for_a_way(Patience_s);
      reopen;
      .abolish(patience(_));
@@ -53,6 +54,13 @@
      set_destination(Post);
      !permission(Post).
 +!let_pass(_).
+
+// On a crossing it would be in the way of others meanwhile: it waits at home, if a way leads there.
++!stand_aside(Post) : crossing(_) & home(Place) & Place \== Post
+  <- !go_to(Place);
+     set_destination(Post).
++!stand_aside(_).
+-!stand_aside(Post) <- set_destination(Post).
 
 // No longer than until a corridor in which it turned back counts as open again. If it takes longer others may pass; but
 // where there is no network it keeps what it was granted, since the service could not grant it anew.

@@ -24,13 +24,14 @@ class OccupancyReports:
         """Report that it is wholly there; False if that was the last report."""
         if self._last is not None and (where, post, towards) == self._place(self._last):
             return False
-        self._last = Occupancy(
+        told = Occupancy(
             where=where, post=post, towards=towards, evidence=evidence, way_mm=way_mm, happened_at=self._utc()
         )
         with self._store.transaction() as database:
-            row = _FACT, self._last.model_dump_json()
+            row = _FACT, told.model_dump_json()
             database.execute("INSERT OR REPLACE INTO facts (name, value) VALUES (?, ?)", row)
-            self._outbox.put(self._last)
+            self._outbox.put(told)
+        self._last = told
         return True
 
     def forget(self) -> None:

@@ -133,7 +133,7 @@ def _places(scenario: Scenario, campus: CampusMap) -> Iterator[Complaint]:
         if isinstance(row, Stander) and row.at is None and row.corridor is None:
             yield key, "the place is missing", "Give at or corridor."
     for post in scenario.dirt:
-        yield from _post("dirt", post, campus)
+        yield from _post("dirt", post, campus.track)
 
 
 def _happenings(scenario: Scenario, campus: CampusMap, robots: set[str]) -> Iterator[Complaint]:
@@ -142,7 +142,7 @@ def _happenings(scenario: Scenario, campus: CampusMap, robots: set[str]) -> Iter
             if row.robot is not None:
                 yield from _one_of(f"{key}.robot", row.robot, robots)
             if row.after_post is not None:
-                yield from _post(f"{key}.after_post", row.after_post, campus)
+                yield from _post(f"{key}.after_post", row.after_post, campus.track)
     for fault in scenario.fault:
         try:
             Faults().set(fault.switch, fault.value)

@@ -49,7 +49,7 @@ class Drive:
         pins = (f"GPIO{pin}" for pin in (mount.left_pin, mount.centre_pin, mount.right_pin))
         self.sensor = ThreeDiodes(*pins, pin_factory=self.robot.pin_factory)
         self.loop = DriveLoop(self.base, self.sensor, self.shape, self.now)
-        self.watch = MarkerWatch(self.robot.camera, MarkerReader(self.campus.posts), self.now)
+        self.watch = MarkerWatch(self.robot.camera, MarkerReader(self.campus.track.posts), self.now)
         self.path: list[tuple[float, float]] = []
         self.sent: list[tuple[float, float]] = []
         self.readings: list[str] = []
