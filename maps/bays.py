@@ -52,7 +52,8 @@ class Dock:
 class Bay:
     """A spur of tape off `post`: its bearing from there, its length, and the place of the axle of a robot in it.
 
-    `home`: it is kept for the robot whose home it is; `tag`: see `maps.tags`.
+    `home`: it is kept for the robot whose home it is; `tag`: see `maps.tags`. One with a dock that is no home is kept
+    for robots that charge; all others are for everybody.
     """
 
     name: str
@@ -70,6 +71,10 @@ class Bay:
     def point(self) -> Point:
         return Point(self.x_m, self.y_m)
 
+    @property
+    def is_for_passing(self) -> bool:
+        return not self.home and self.dock is None
+
 
 def bays_of(row: PostRow, tags: Mapping[str, int | None]) -> tuple[Bay, ...]:
     """The bays of one post, in the order of the file."""
@@ -83,9 +88,8 @@ def _bay(row: PostRow, bay: BayRow, name: str, tag: int | None) -> Bay:
     dock = Dock(*moved(end, bearing_rad, DOCK_BEYOND_BAY_M), bearing_rad) if bay.dock else None
     beside_end = marker(name, end, bearing_rad, MARKER_BEFORE_BAY_M)
     beside_dock = (marker(name, Point(dock.x_m, dock.y_m), bearing_rad, 0.0),) if dock else ()
-    home = bay.home or bay.dock
     markers = (beside_end, *beside_dock)
-    return Bay(name, row.name, bearing_rad, bay.length_m, end.x_m, end.y_m, markers, home, dock, tag)
+    return Bay(name, row.name, bearing_rad, bay.length_m, end.x_m, end.y_m, markers, bay.home, dock, tag)
 
 
 def own_markers(post: str, rows: tuple[PoseRow, ...]) -> tuple[Marker, ...]:

@@ -246,8 +246,7 @@ def _post(row: PostRow, corridors: tuple[Corridor, ...], tags: Mapping[str, int 
         _standard_markers(row, dock, arrivals, spurs) if row.markers is None else own_markers(row.name, row.markers)
     )
     if spurs:
-        homes = sum(bay.home for bay in spurs)
-        bays = len(spurs) - homes
+        homes, bays = sum(bay.home for bay in spurs), sum(bay.is_for_passing for bay in spurs)
         dock = next((bay.dock for bay in spurs if bay.dock), None)
     else:
         homes, bays = int(dock is not None) if row.homes is None else row.homes, 1 if row.bays is None else row.bays

@@ -40,7 +40,7 @@ class BayRow(Row):
     length_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 1.0
     # Kept for the robot whose home it is.
     home: bool = False
-    # Beyond the end of the tape, straight on. A bay with a dock is a home.
+    # Beyond the end of the tape, straight on.
     dock: bool = False
     # Left out: the post's name and `_bay`, with the bay's place in this file, counted from 1.
     name: str | None = None

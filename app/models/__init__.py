@@ -27,6 +27,7 @@ from app.models.robots.battery_samples import BatterySample
 from app.models.robots.enrolment_codes import EnrolmentCode
 from app.models.robots.forecasts import DurationRow, ForecastRow, ForecastUnderWayRow
 from app.models.robots.missions import MissionRow, MissionState, StopRow
+from app.models.robots.occupancies import OccupancyRow
 from app.models.robots.reservations import ClaimRow, ClosedCorridor, GrantRow
 from app.models.robots.robot_commands import RobotCommand
 from app.models.robots.robot_messages import MessageToRobot, RobotJournal, RobotMessage
@@ -57,6 +58,7 @@ __all__ = [
     "Notification",
     "NotificationKind",
     "NotificationPreferences",
+    "OccupancyRow",
     "Order",
     "OrderEvent",
     "OrderLink",

@@ -1,6 +1,6 @@
-"""Docks as homes: each dock is the home of one robot, since no robot sees that another stands in it.
+"""Homes: each dock or bay is the home of one robot, since no robot sees that another stands in it.
 
-A dock belongs to the robot that named it first. Another one that names it is refused, and the alarm `same_home` rings
+It belongs to the robot that named it first. Another one that names it is refused, and the alarm `same_home` rings
 until it names another (decision 0088). A robot with work under way is let in to finish it, and gets no new orders.
 """
 
@@ -40,12 +40,19 @@ async def check_home(
     return None if await _is_at_work(session, robot.name, hello) else SameHome(sentence)
 
 
+def note_home(robot: RobotRow, campus: CampusMap, hello: Hello) -> None:
+    """Take over what it says. A bay is at home at its post for everybody but the traffic."""
+    robot.home = hello.home and campus.address_of(hello.home)
+    robot.home_bay = hello.home if hello.home != robot.home else None
+
+
 async def _owner(session: AsyncSession, campus: CampusMap, robot: str, home: str | None) -> str | None:
-    """The other robot whose home this dock is. One without a valid token does not come any more."""
-    if home not in {dock.name for dock in campus.docks()}:
+    """The other robot whose home this is. One without a valid token does not come any more."""
+    if campus.track.home_at(home) != home or home is None:
         return None
     may_come = select(RobotToken.robot).where(col(RobotToken.revoked_at).is_(None))
-    others = select(RobotRow.name).where(RobotRow.home == home, RobotRow.name != robot)
+    named = RobotRow.home if campus.address_of(home) == home else RobotRow.home_bay
+    others = select(RobotRow.name).where(named == home, RobotRow.name != robot)
     owners = others.where(col(RobotRow.name).in_(may_come), col(RobotRow.name).not_in(WITHOUT_A_HOME))
     return (await session.exec(owners.order_by(RobotRow.name))).first()
 

@@ -20,6 +20,7 @@ from app.robots.battery import BatteryDiary
 from app.robots.corridors import reservations
 from app.robots.corridors.closed_corridors import WAY_BLOCKED
 from app.robots.corridors.closures import tell_of_closed
+from app.robots.corridors.occupancies import note_occupancy
 from app.robots.corridors.occupied import tell_of_traffic
 from app.robots.diagnostics import LiveDiagnostics
 from app.robots.energy_use import EnergyUse
@@ -34,7 +35,7 @@ from protocol.clock import Clock
 from protocol.ids import new_uuid
 from protocol.parts import Activity, Battery, Part, Position
 from protocol.to_robot import Grant
-from protocol.to_server import Claim, Clear, Event, Fault, Snapshot, Why, Withdraw
+from protocol.to_server import Claim, Clear, Event, Fault, Occupancy, Snapshot, Why, Withdraw
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 
@@ -151,13 +152,16 @@ class Fleet:
             case Clear():
                 await reservations.clear(session, self.campus, robot.name, message, now)
                 await tell_of_traffic(session, self.feed, robot.name)
+            case Occupancy():
+                at = put_right(message.happened_at, robot.clock_off_s)
+                await note_occupancy(session, self.campus, robot.name, message, at)
 
     def note(self, robot: RobotRow, message: Snapshot | Why) -> None:
         """Take over what a robot says of its present state."""
         if isinstance(message, Why):
             robot.why = message.sentence
         else:
-            note_state(robot, message.position, message.battery)
+            note_state(robot, self.campus, message.position, message.battery)
             robot.activity = message.activity
 
     def announce(self, session: AsyncSession, robot: RobotRow, is_seen: bool = True) -> None:
@@ -199,9 +203,13 @@ class Fleet:
         return robot_view(robot, self.campus, self.settings, self.clock.utc())
 
 
-def note_state(robot: RobotRow, position: Position, battery: Battery) -> None:
-    """Take over what `hello` and `snapshot` share."""
-    robot.post, robot.previous, robot.towards = position.post, position.previous, position.towards
+def note_state(robot: RobotRow, campus: CampusMap, position: Position, battery: Battery) -> None:
+    """Take over what `hello` and `snapshot` share. People know posts: a robot in a bay is at its post."""
+    post, previous, towards = (
+        place and campus.address_of(place) for place in (position.post, position.previous, position.towards)
+    )
+    robot.post, robot.towards = post, None if towards == post and position.towards != position.post else towards
+    robot.previous = previous if previous != post else robot.previous
     robot.seen_at = position.seen_at and put_right(position.seen_at, robot.clock_off_s)
     robot.battery_ratio, robot.charging, robot.docked = battery.ratio, battery.charging, battery.docked
     if battery.charging:

@@ -11,6 +11,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.models import GrantRow, Person, RobotCommand, RobotRow
 from app.robots.alarms import VANISHED, clear_alarms
 from app.robots.commands import REVOKE, ask, new_command_id, note
+from app.robots.corridors.occupancies import forget_occupancy
 from app.robots.corridors.occupied import tell_of_traffic
 from app.robots.corridors.reservations import forget_what_waits
 from app.robots.errors import RobotGoesOn, RobotTooOld
@@ -31,6 +32,7 @@ async def take_out(session: AsyncSession, fleet: Fleet, robot: RobotRow, reason:
     held = update(GrantRow).where(col(GrantRow.robot) == robot.name, col(GrantRow.cleared_at).is_(None))
     freed = await session.exec(held.values(cleared_at=now, freed_by=request.command_id))
     await forget_what_waits(session, robot.name, "a person has given its corridors to others")
+    await forget_occupancy(session, robot.name)
     robot.taken_out_at, robot.waits_for = now, None
     await clear_alarms(session, robot.name, VANISHED, now)
     await session.flush()

@@ -19,7 +19,7 @@ BY_ITSELF: Final = "It tries the corridor again by itself, ten minutes after it 
 def corridor_on(campus: CampusMap, name: str) -> Corridor:
     """Raises NoSuchCorridor."""
     try:
-        return campus.corridor_named(name)
+        return campus.track.corridor_named(name)
     except UnknownCorridor as problem:
         raise NoSuchCorridor(f"{problem}.") from None
 

@@ -19,6 +19,7 @@ length_m = 0.8
 bearing_deg = 180.0
 length_m = 0.6
 dock = true
+home = true
 
 [[post]]
 name = "b"
@@ -47,6 +48,12 @@ def test_the_dock_is_straight_on_beyond_the_end_of_the_tape(campus):
     dock = campus.post("a").spurs[1].dock
     assert (dock.x_m, dock.y_m) == pytest.approx((-1.1, 0.0))
     assert dock.heading_rad == pytest.approx(math.pi)
+
+
+def test_a_dock_that_is_no_home_is_for_all_to_charge_and_not_for_passing(write_map):
+    campus = read_map(write_map(TWO_POSTS.replace("home = true\n", "")))
+    assert (campus.post("a").bays, campus.post("a").homes) == (1, 0)
+    assert campus.post("a").dock is not None
 
 
 def test_a_post_counts_its_bays_and_homes(campus):

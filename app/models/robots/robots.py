@@ -15,10 +15,10 @@ class RobotRow(SQLModel, table=True):
     `online` says that its socket is open now; every start of the service begins with no robot online. `public_key`
     (Ed25519, base64) is what its receipts are signed with; None: enrolled without one. `clock_off_s` is how far its
     clock was ahead at its last hello, or when it was seen to have been set since. `home` and `docked` as it says;
-    None: it has not said. `waits_for`: the corridor it wishes to enter, for which robots, until about when.
-    `taken_out_at`: a person has given its corridors to others, and it has not heard so yet. `proves_since`: from then
-    on its receipts prove that a code was shown; it stays even if a later hello does not say so, until it is enrolled
-    again.
+    None: it has not said. `home_bay`: the bay of its home post, on maps with bays. `waits_for`: the corridor it wishes
+    to enter, for which robots, until about when. `taken_out_at`: a person has given its corridors to others, and it has
+    not heard so yet. `proves_since`: from then on its receipts prove that a code was shown; it stays even if a later
+    hello does not say so, until it is enrolled again.
     """
 
     __tablename__ = "robots"
@@ -43,6 +43,7 @@ class RobotRow(SQLModel, table=True):
     takes_confirm: bool = False
     clock_off_s: float = 0.0
     home: str | None = Field(default=None, max_length=64)
+    home_bay: str | None = Field(default=None, max_length=64)
     docked: bool | None = None
     waits_for: dict[str, Any] | None = Field(default=None, sa_type=JSON(none_as_null=True))
     taken_out_at: datetime | None = Field(default=None, sa_type=UtcTime)

@@ -11,6 +11,7 @@ from app.orders.stops import active_mission
 from app.robots.alarms import clear_alarms, raise_alarm
 from app.robots.commands import REVOKE, ask, new_command_id, unanswered
 from app.robots.corridors import reservations
+from app.robots.homes import note_home
 from app.robots.link import clocks, inbox, outbox
 from app.robots.mission_updates import tell_mission
 from app.robots.service import Fleet, note_state
@@ -44,9 +45,10 @@ async def greet(session: AsyncSession, fleet: Fleet, robot: RobotRow, envelope: 
         await restate(session, fleet, robot)
     await clocks.compare(session, robot, envelope.at, now)
     await _compare_maps(session, fleet, robot, hello, now)
-    note_state(robot, hello.position, hello.battery)
+    note_state(robot, fleet.campus, hello.position, hello.battery)
     robot.software, robot.map_version, robot.online, robot.heard_at = hello.software, hello.map_version, True, now
-    robot.takes_confirm, robot.home = "confirm" in hello.understands, hello.home
+    robot.takes_confirm = "confirm" in hello.understands
+    note_home(robot, fleet.campus, hello)
     if PROOF in hello.understands:
         robot.proves_since = robot.proves_since or now
     await _tell_out_of_service(session, fleet, robot, understands=REVOKE in hello.understands)

@@ -30,7 +30,7 @@ async def answer(
     """Grant a claim (or let it wait), deny what the map does not have; None if it waits, or was answered before."""
     if await session.get(ClaimRow, (robot, claim.claim_id)) is not None:
         return None
-    unknown = _unknown(campus, claim.legs)
+    unknown = _unknown(campus.track, claim.legs)
     reason = f"the map {campus.name} has no corridor {_name(unknown)}" if unknown else None
     legs = [leg.model_dump() for leg in claim.legs]
     closed = () if by_schedule or unknown else await _closed(session, robot, claim.legs)
@@ -66,7 +66,7 @@ async def withdraw(session: AsyncSession, robot: RobotRow, message: Withdraw) ->
 
 async def clear(session: AsyncSession, campus: CampusMap, robot: str, message: Clear, now: datetime) -> None:
     """The robot has left a corridor. Raises UnknownCorridor for one that the map does not have."""
-    if _unknown(campus, (message.leg,)):
+    if _unknown(campus.track, (message.leg,)):
         raise UnknownCorridor(f"the map {campus.name} has no corridor {_name(message.leg)}")
     held = update(GrantRow).where(
         col(GrantRow.robot) == robot,
@@ -118,10 +118,10 @@ async def _closed(session: AsyncSession, robot: str, legs: Sequence[Leg]) -> tup
     return tuple(leg for leg in legs if _name(leg) in names)
 
 
-def _unknown(campus: CampusMap, legs: Sequence[Leg]) -> Leg | None:
+def _unknown(track: CampusMap, legs: Sequence[Leg]) -> Leg | None:
     for leg in legs:
         try:
-            campus.corridor(leg.from_post, leg.to_post)
+            track.corridor(leg.from_post, leg.to_post)
         except CampusMapError:
             return leg
     return None

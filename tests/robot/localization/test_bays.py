@@ -9,7 +9,7 @@ from protocol.parts import Leg
 from robot.localization.bays import Occupied, bay_for, evidence_of, occupied, places_to_stand
 from robot.localization.place import AtPost, Between, Coming, Leaving, Place, Unknown
 
-TRACK = find_map(Path(__file__).parents[1] / "scenarios" / "bays.toml").track
+TRACK = find_map(Path(__file__).parents[2] / "bays.toml").track
 CORRIDOR = TRACK.corridor("post2", "post3")
 SPUR = TRACK.corridor("post3", "post3_bay1")
 OUTWARDS = Between(CORRIDOR, "post2", "post3", 1000.0, 3000.0)

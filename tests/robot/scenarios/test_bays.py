@@ -13,7 +13,7 @@ from robot.scenarios.actors.actors import Actor
 from robot.scenarios.loading import load_scenario
 from robot.scenarios.stage import Stage
 
-MAP = Path(__file__).with_name("bays.toml")
+MAP = Path(__file__).parents[2] / "bays.toml"
 LETTER = """
 seed = {seed}
 limit_s = 900

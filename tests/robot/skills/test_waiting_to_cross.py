@@ -12,7 +12,7 @@ from robot.skills import Done, Failed, FollowLine
 from tests.robot.skills.track import Drive
 
 Make = Callable[..., Drive]
-CAMPUS = find_map(Path(__file__).parents[1] / "scenarios" / "bays.toml")
+CAMPUS = find_map(Path(__file__).parents[2] / "bays.toml")
 TRACK = CAMPUS.track
 BODIES_TOUCH_M = 0.348
 """Two robots, each 348 mm across (Create 2), with their axles so far apart."""

@@ -1,0 +1,111 @@
+"""On a map with bays: what robots say to occupy is kept, people see posts alone, and a home is one robot's bay."""
+
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+from websockets.exceptions import ConnectionClosed
+
+from app.core.settings import Settings
+from app.models import Alarm, OccupancyRow, RobotRow
+from app.robots.corridors.occupancies import forget_occupancy
+from protocol.both_ways import Error
+from protocol.clock import SteppedClock
+from protocol.parts import Leg
+from protocol.to_server import Clear, Occupancy
+from tests.app.robots.playing import PlayedRobot, Service, serving, until
+
+MAP = Path(__file__).parents[2] / "bays.toml"
+
+
+@pytest.fixture
+async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
+    async with serving(settings.model_copy(update={"map": str(MAP)}), clock) as service:
+        yield service
+
+
+def occupies(robot: PlayedRobot, where: str, post: str, towards: str | None = None) -> Occupancy:
+    return Occupancy.model_validate(
+        {"where": where, "post": post, "towards": towards, "evidence": "marker", "happened_at": robot.clock.utc()}
+    )
+
+
+async def test_the_last_word_of_a_robot_is_kept(service: Service, robot: PlayedRobot) -> None:
+    robot.token = await service.enrol("r1")
+    async with robot.connected(service.url, robot.token):
+        await robot.greet("post1_bay1", home="post5_bay2")
+        await robot.say(occupies(robot, "bay", "post1_bay1"))
+        await robot.say(occupies(robot, "corridor", "post1", "post2"))
+
+        async def kept() -> OccupancyRow | None:
+            rows = await service.rows(OccupancyRow, kind="corridor")
+            return rows[0] if rows else None
+
+        row = await until(kept)
+        assert (row.robot, row.place, row.towards, row.evidence) == ("r1", "post1", "post2", "marker")
+        assert row.at == robot.clock.utc()
+
+
+@pytest.mark.parametrize(
+    ("where", "post", "towards"),
+    [
+        ("bay", "post1", None),
+        ("crossing", "post1_bay1", None),
+        ("corridor", "post1", "post4"),
+        ("corridor", "post1", None),
+        ("bay", "post9_bay1", None),
+    ],
+)
+async def test_what_the_map_does_not_have_is_not_believed(
+    service: Service, robot: PlayedRobot, where: str, post: str, towards: str | None
+) -> None:
+    robot.token = await service.enrol("r1")
+    async with robot.connected(service.url, robot.token):
+        await robot.greet("post1_bay1", home="post5_bay2")
+        await robot.say(occupies(robot, where, post, towards))
+        error = (await robot.hear("error")).body
+        assert isinstance(error, Error)
+        assert error.code == "unknown_corridor"
+        assert await service.rows(OccupancyRow) == []
+
+
+async def test_people_see_a_robot_in_a_bay_at_its_post(service: Service, robot: PlayedRobot) -> None:
+    robot.token = await service.enrol("r1")
+    async with robot.connected(service.url, robot.token):
+        await robot.greet("post4_bay1", home="post5_bay2")
+        row = await service.row(RobotRow, name="r1")
+        assert (row.post, row.home, row.home_bay) == ("post4", "post5", "post5_bay2")
+
+
+async def test_a_spur_is_cleared_like_a_corridor(service: Service, robot: PlayedRobot) -> None:
+    robot.token = await service.enrol("r1")
+    async with robot.connected(service.url, robot.token):
+        await robot.greet("post4_bay1", home="post5_bay2")
+        await robot.say(Clear(leg=Leg(from_post="post4_bay1", to_post="post4"), post="post4"))
+        await robot.say(occupies(robot, "crossing", "post4"))
+        await until(lambda: service.rows(OccupancyRow, kind="crossing"))
+        assert not [envelope for envelope in robot.heard if envelope.type == "error"]
+
+
+async def test_two_homes_at_one_post_are_two_robots(service: Service, robot: PlayedRobot, clock: SteppedClock) -> None:
+    second = PlayedRobot(clock, "r2", "journal-2")
+    robot.token, second.token = await service.enrol("r1"), await service.enrol("r2")
+    async with robot.connected(service.url, robot.token):
+        await robot.greet("post4_bay2", home="post4_bay2")
+        async with second.connected(service.url, second.token):
+            with pytest.raises(ConnectionClosed):
+                await second.greet("post4_bay2", home="post4_bay2")
+        async with second.connected(service.url, second.token):
+            await second.greet("post1_bay2", home="post1_bay2")
+        assert await service.rows(Alarm, robot="r2", name="same_home", cleared_at=None) == []
+
+
+async def test_a_person_who_has_looked_frees_what_a_robot_occupied(service: Service, robot: PlayedRobot) -> None:
+    robot.token = await service.enrol("r1")
+    async with robot.connected(service.url, robot.token):
+        await robot.greet("post1_bay1", home="post5_bay2")
+        await robot.say(occupies(robot, "bay", "post1_bay1"))
+        await until(lambda: service.rows(OccupancyRow))
+    async with service.app.state.parts.database.transaction() as session:
+        await forget_occupancy(session, "r1")
+    assert await service.rows(OccupancyRow) == []
