@@ -150,7 +150,9 @@ class CampusMap:
             return self
         places = {place.name: place for post in self.posts.values() for place in _places(post)}
         spurs = tuple(_spur(post, bay) for post in self.posts.values() for bay in post.spurs)
-        return CampusMap(self.name, self.title, places, (*self.corridors, *spurs), self.note)
+        track = CampusMap(self.name, self.title, places, (*self.corridors, *spurs), self.note)
+        object.__setattr__(track, "version", self.version)  # it says nothing that the map does not
+        return track
 
     def address_of(self, place: str) -> str:
         """The post of a bay; any other name as it is."""
@@ -170,6 +172,12 @@ class CampusMap:
             return next((place.name for place in self.docks()), None)
         homes = (place for place in self.posts.values() if place.dock or (place.homes and place.bay_of))
         return next((place.name for place in homes if name in (place.name, place.bay_of)), None)
+
+    @property
+    def home_bays(self) -> tuple[Post, ...]:
+        """On a track: the bays that are homes, those with a dock first."""
+        homes = [place for place in self.posts.values() if place.bay_of and place.homes]
+        return tuple(sorted(homes, key=lambda place: place.dock is None))
 
     @cached_property
     def _bays(self) -> Mapping[str, tuple[Post, ...]]:

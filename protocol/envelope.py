@@ -53,8 +53,8 @@ TO_ROBOT: Final[Mapping[str, type[Part]]] = {
     "watch": to_robot.Watch,
     **BOTH_WAYS,
 }
-YOUNGER: Final = ("confirm", "watch", "open_way", "detour", "revoke", "until_ratio", "proof")
-"""What came later: types to robots and one field, sent only to those that name them in `hello`, since an older robot
+YOUNGER: Final = ("confirm", "watch", "open_way", "detour", "revoke", "until_ratio", "proof", "home")
+"""What came later: types to robots and some fields, sent only to those that name them in `hello`, since an older robot
 would hang up; and what a robot proves, which is expected of those that name it."""
 
 DURABLE: Final = frozenset({"event", "claim", "withdraw", "clear", "occupancy"}) | {

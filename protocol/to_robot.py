@@ -1,8 +1,8 @@
 """Messages from the service to a robot: one frozen class per message."""
 
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer
 
 from protocol.parts import (
     Identifier,
@@ -23,12 +23,22 @@ class Welcome(Part):
     """The answer to `hello`: what the server last had from this robot's journal; resume from there.
 
     `resume_from` is the lowest `seq` of the server's own journal that can still come. `at` is the server's time.
+    `home` is the bay in which the robot rests: left out where the map has no bays, and for a robot that is older than
+    it and has its home from its settings.
     """
 
     received: Received
     resume_from: Seq = 1
     server: Sentence
     at: Moment
+    home: PostName | None = None
+
+    @model_serializer(mode="wrap")
+    def _without_nothing(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        told: dict[str, Any] = whole(self)
+        if self.home is None:
+            told.pop("home", None)
+        return told
 
 
 class Mission(Part):

@@ -31,8 +31,8 @@ class Hello(Part):
 
     `received` is what it last had from the server, `resume_from` the lowest `seq` of its own journal that can still
     come. `understands` names what is younger than the protocol and known to this robot (messages, the field
-    `until_ratio` of stops, and `proof`: its receipts prove that a code was shown); it is sent nothing else of that
-    kind. `home` is the post of its own dock.
+    `until_ratio` of stops, `home` of `welcome`, and `proof`: its receipts prove that a code was shown); it is sent
+    nothing else of that kind. `home` is the post of its own dock, or the bay in which it rests.
     """
 
     received: Received = Received()

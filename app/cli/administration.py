@@ -12,7 +12,7 @@ from app.core.database.database import Database
 from app.core.database.schema_version import bring_to_head
 from app.core.errors import StartError
 from app.core.server_key import open_server_key
-from app.core.settings import Settings, make_data_folder, open_clock
+from app.core.settings import Settings, make_data_folder, open_clock, open_map
 from app.models import Person, Role
 from app.robots import service as fleet
 from app.robots.enrolment.service import EnrolmentService
@@ -77,7 +77,9 @@ def _roles(names: list[str]) -> set[Role]:
 async def make_enrolment_code(settings: Settings, name: str) -> tuple[str, datetime]:
     """A one-time code for a robot of this name, and until when it is good. Raises RobotNameInvalid."""
     async with database_at_head(settings) as session:
-        desk = EnrolmentService(settings, open_server_key(settings.server_key_path), open_clock(settings))
+        desk = EnrolmentService(
+            settings, open_map(settings), open_server_key(settings.server_key_path), open_clock(settings)
+        )
         row, code = await desk.make_code(session, name)
         return code, row.expires_at
 

@@ -135,7 +135,7 @@ class Parts:
         self.timer = Timer(self.database, self.orders, self.standing_orders)
 
     def _add_robots(self) -> None:
-        self.enrolment_service = EnrolmentService(self.settings, self.server_key, self.clock)
+        self.enrolment_service = EnrolmentService(self.settings, self.campus, self.server_key, self.clock)
         self.fleet = Fleet(self.database, self.campus, self.settings, self.clock, self.feed, self.orders)
         self.intake = Intake(self.fleet)
         self.hand_overs, self.delegating = HandOvers(self.fleet), Delegating(self.fleet, self.sign_in_service)

@@ -121,6 +121,12 @@ class SameHome(ProtocolError):
     code = "same_home"
 
 
+class NoHomeLeft(ProtocolError):
+    """Every home on the map is another robot's: add a bay with `home = true`, or take back a robot's token."""
+
+    code = "no_home_left"
+
+
 class MessageGap(ProtocolError):
     """A durable message is missing before this one: connect again and resume."""
 

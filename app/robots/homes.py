@@ -1,9 +1,13 @@
 """Homes: each dock or bay is the home of one robot, since no robot sees that another stands in it.
 
-It belongs to the robot that named it first. Another one that names it is refused, and the alarm `same_home` rings
-until it names another (decision 0088). A robot with work under way is let in to finish it, and gets no new orders.
+On a map with bays the service gives them: a robot keeps the one that it has, gets the one that it names if that is
+free, or the first that is free; where none is left it is refused with the reason. A robot that is older than that, and
+every robot on a map without bays, names its home itself. It belongs to the robot that named it first: another one is
+refused, and the alarm `same_home` rings until it names another (decision 0088). A robot with work under way is let in
+to finish it, and gets no new orders.
 """
 
+from collections.abc import Sequence
 from datetime import datetime
 from typing import Final
 
@@ -14,7 +18,7 @@ from app.models import Alarm, RobotRow, RobotToken
 from app.orders.stops import active_mission
 from app.robots.alarms import clear_alarms, raise_alarm
 from app.robots.corridors import reservations
-from app.robots.errors import SameHome
+from app.robots.errors import NoHomeLeft, SameHome
 from maps import CampusMap
 from protocol.to_server import Hello
 
@@ -24,10 +28,18 @@ WITHOUT_A_HOME: Final = select(Alarm.robot).where(Alarm.name == SAME_HOME, col(A
 """The robots whose home is another's."""
 
 
+GIVEN: Final = "home"
+"""In `hello.understands`: the robot takes its home from the service."""
+
+
 async def check_home(
     session: AsyncSession, campus: CampusMap, robot: RobotRow, hello: Hello, now: datetime
-) -> SameHome | None:
+) -> SameHome | NoHomeLeft | None:
     """Return why this robot is not let in, if so. It is returned, not raised, so that the alarm is committed."""
+    if campus.track.home_bays and GIVEN in hello.understands:
+        given = await free_home(session, campus, robot.name, (robot.home_bay, hello.home))
+        refusal = _no_home_left(campus) if given is None else None
+        return None if refusal and await _is_at_work(session, robot.name, hello) else refusal
     owner = await _owner(session, campus, robot.name, hello.home)
     if owner is None:
         await clear_alarms(session, robot.name, SAME_HOME, now)
@@ -40,10 +52,39 @@ async def check_home(
     return None if await _is_at_work(session, robot.name, hello) else SameHome(sentence)
 
 
-def note_home(robot: RobotRow, campus: CampusMap, hello: Hello) -> None:
-    """Take over what it says. A bay is at home at its post for everybody but the traffic."""
-    robot.home = hello.home and campus.address_of(hello.home)
-    robot.home_bay = hello.home if hello.home != robot.home else None
+async def note_home(session: AsyncSession, campus: CampusMap, robot: RobotRow, hello: Hello) -> str | None:
+    """Write down its home; return it if the service gives it. Its post is at home for everybody but the traffic."""
+    given = None
+    if campus.track.home_bays and GIVEN in hello.understands:
+        given = await free_home(session, campus, robot.name, (robot.home_bay, hello.home))
+    home = given or hello.home
+    robot.home = home and campus.address_of(home)
+    robot.home_bay = home if home != robot.home else None
+    return given
+
+
+async def free_home(session: AsyncSession, campus: CampusMap, robot: str, wanted: Sequence[str | None]) -> str | None:
+    """The first of the wanted homes that is no other robot's, else any; None if every one is."""
+    may_come = select(RobotToken.robot).where(col(RobotToken.revoked_at).is_(None))
+    theirs = select(RobotRow.home_bay).where(RobotRow.name != robot, col(RobotRow.name).in_(may_come))
+    taken = set((await session.exec(theirs)).all())
+    free = [home.name for home in campus.track.home_bays if home.name not in taken]
+    return next((home for home in wanted if home in free), free[0] if free else None)
+
+
+async def no_room(session: AsyncSession, campus: CampusMap, robot: str) -> str | None:
+    """The reason why a robot cannot be enrolled, if the map has no home for it."""
+    if not campus.track.home_bays or await free_home(session, campus, robot, ()):
+        return None
+    return f"{str(_no_home_left(campus)).capitalize()}."
+
+
+def _no_home_left(campus: CampusMap) -> NoHomeLeft:
+    homes = len(campus.track.home_bays)
+    return NoHomeLeft(
+        f"the map {campus.name} has {homes} home{'s' if homes > 1 else ''}, and each is another robot's: add a bay "
+        "with home = true, or take back the token of a robot that does not come any more"
+    )
 
 
 async def _owner(session: AsyncSession, campus: CampusMap, robot: str, home: str | None) -> str | None:

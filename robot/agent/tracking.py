@@ -48,7 +48,7 @@ class Tracker:
     """The place as of the last look. What is driven is told by odometry, what is meant by `Navigator`."""
 
     def __init__(self, campus: CampusMap, home: str | None, missions: MissionManager) -> None:
-        self.campus, self.home = campus, home
+        self.campus, self._own_home = campus, home
         self.visited: list[str] = []
         """The posts reached, in order, the newest ones; the same one twice only after another."""
         self.arrivals = 0
@@ -68,6 +68,12 @@ class Tracker:
         self._compass = Compass()
         self._seen_at_s = -math.inf  # when the newest marker was read that has been judged
         self._foreign: Foreign | None = None
+
+    @property
+    def home(self) -> str | None:
+        """Where it rests: the bay that the service has given it, else the home of its settings."""
+        given = self._duties.held.home
+        return given if given in self.campus.posts else self._own_home
 
     @property
     def at(self) -> str | None:
@@ -105,15 +111,10 @@ class Tracker:
         post = self._new_marker(view)
         if view.base and view.base.docked:
             self._stand_in_dock(view)
-            self._report_occupied()
         elif LIFTED in view.faults:
             self._lift(view)
         else:
             self._drive(view, post)
-            self._report_occupied()
-
-    def _report_occupied(self) -> None:
-        """Others may have what it is wholly out of."""
         here_mm = self._odometry.ahead_mm
         if now := occupied(self.campus, self._place, here_mm):
             self._duties.occupies(now.where, now.post, now.towards, *evidence_of(self._place, here_mm))

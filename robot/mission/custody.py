@@ -12,7 +12,8 @@ from protocol.parts import Purpose, Stop
 from protocol.proofs import ShownCode
 from protocol.to_robot import Confirm, Mission, Verifier
 from protocol.to_server import Event, HandoverReceipt, How
-from robot.mission.memory import Loading, Memory
+from robot.mission.loading import Loading
+from robot.mission.memory import Memory
 from robot.mission.outbox import Outbox
 
 Sign = Callable[[HandoverReceipt], HandoverReceipt]

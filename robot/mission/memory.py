@@ -20,6 +20,7 @@ from protocol.envelope import TO_ROBOT, Envelope, type_of
 from protocol.parts import Leg, MissionHeld, Part, Position, Purpose, Received
 from protocol.sequence import Reception
 from protocol.to_robot import Detour, Grant, Mission, Verifier, Verifiers
+from robot.mission.loading import Loading
 from robot.mission.mission_updates import MissionConflict, conflict, next_undone
 from robot.mission.store import Store
 
@@ -41,15 +42,6 @@ _TIMES: Final = TypeAdapter(dict[str, datetime])
 _RECEIVED: Final = TypeAdapter(Received)
 _WORD: Final = TypeAdapter[str | None](str | None)
 _LEG: Final = TypeAdapter[Leg | None](Leg | None)
-
-
-class Loading(Part):
-    """Where mail came aboard and by which code: None if no person was identified (the Spot button)."""
-
-    post: str
-    code_sha256: str | None = None
-
-
 _LOADINGS: Final = TypeAdapter(dict[str, Loading])
 
 
@@ -316,6 +308,13 @@ class Memory:
     def note_moment(self, moment: str) -> None:
         """Until it is seen at a post, or heads for another one."""
         self._write("moment", _WORD, moment)
+
+    def home(self) -> str | None:
+        """The bay that the service has given it to rest in."""
+        return self._read("home", _WORD, None)
+
+    def keep_home(self, home: str) -> None:
+        self._write("home", _WORD, home)
 
     def closed(self) -> dict[str, datetime]:
         """The corridors in which it turned back, by name, and when."""

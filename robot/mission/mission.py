@@ -113,6 +113,7 @@ class MissionManager:
                 self.memory.charge() is not None,
                 self.memory.loadings(),
                 self.memory.moment(),
+                self.memory.home(),
                 self.memory.detour(),
             )
         self.revision += 1

@@ -6,7 +6,7 @@ from typing import Final
 from protocol.ids import new_id
 from protocol.parts import Stop, StopAction
 from protocol.to_robot import Mission
-from robot.mission.memory import Loading
+from robot.mission.loading import Loading
 
 PREFIX: Final = "return-"
 WAIT_LIMIT_S: Final = 600.0

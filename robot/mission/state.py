@@ -6,7 +6,7 @@ from typing import Final
 
 from protocol.parts import Leg, MissionHeld, Position, Stop
 from protocol.to_robot import Mission, Verifier
-from robot.mission.memory import Loading
+from robot.mission.loading import Loading
 
 REVOKED: Final = "revoked"
 """The fault of a robot whose corridors were given to others; until it knows where it is."""
@@ -33,6 +33,8 @@ class Held:
     """Where the mail aboard came from."""
     moment: str | None = None
     """What it is about that leaves doubt of its place after a power cut."""
+    home: str | None = None
+    """The bay that the service has given it to rest in."""
     detour: Leg | None = None
     """The corridor that it takes first: so that others can pass, or out of a hole in the network."""
 

@@ -64,6 +64,8 @@ def test_a_post_counts_its_bays_and_homes(campus):
 def test_the_track_has_each_bay_as_a_place_and_each_spur_as_a_corridor(campus):
     track = campus.track
     assert set(track.posts) == {"a", "b", "a_bay1", "a_bay2"}
+    assert track.version == campus.version
+    assert [place.name for place in track.home_bays] == ["a_bay2"]
     assert track.post("a_bay1").bay_of == "a"
     assert track.post("a_bay1").title == "a, bay 1"
     assert track.corridor("a", "a_bay1").tape == (Point(0.0, 0.0), campus.post("a").spurs[0].point)

@@ -48,7 +48,7 @@ async def greet(session: AsyncSession, fleet: Fleet, robot: RobotRow, envelope: 
     note_state(robot, fleet.campus, hello.position, hello.battery)
     robot.software, robot.map_version, robot.online, robot.heard_at = hello.software, hello.map_version, True, now
     robot.takes_confirm = "confirm" in hello.understands
-    note_home(robot, fleet.campus, hello)
+    home = await note_home(session, fleet.campus, robot, hello)
     if PROOF in hello.understands:
         robot.proves_since = robot.proves_since or now
     await _tell_out_of_service(session, fleet, robot, understands=REVOKE in hello.understands)
@@ -60,6 +60,7 @@ async def greet(session: AsyncSession, fleet: Fleet, robot: RobotRow, envelope: 
         resume_from=resume_from,
         server=f"Campus Mail, {fleet.campus.title}",
         at=now,
+        home=home,
     )
     return Greeted(welcome, robot.server_journal, received_seq, resume_from - 1)
 

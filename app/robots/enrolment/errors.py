@@ -3,9 +3,10 @@
 NotSignedIn ├── WrongEnrolmentCode
             └── NoEnrolmentCode
 NotFound    └── UnknownRobotToken
+Conflict    └── NoHomeForRobot
 """
 
-from app.core.errors import NotFound, NotSignedIn
+from app.core.errors import Conflict, NotFound, NotSignedIn
 
 
 class WrongEnrolmentCode(NotSignedIn):
@@ -24,3 +25,9 @@ class UnknownRobotToken(NotFound):
     """This robot has no such token."""
 
     code = "unknown_robot_token"
+
+
+class NoHomeForRobot(Conflict):
+    """Every home on the map is another robot's: this one could rest nowhere."""
+
+    code = "no_home_for_robot"

@@ -15,7 +15,7 @@ from app.core.paging import PAGED, PageDep, PageOf, Sorting
 from app.core.parts import part
 from app.core.settings import ClockDep
 from app.models import RobotToken
-from app.robots.enrolment.errors import NoEnrolmentCode, UnknownRobotToken, WrongEnrolmentCode
+from app.robots.enrolment.errors import NoEnrolmentCode, NoHomeForRobot, UnknownRobotToken, WrongEnrolmentCode
 from app.robots.enrolment.schemas import Enrolled, Enrolment, EnrolmentCodeView, RobotTokenView
 from app.robots.enrolment.service import EnrolmentService
 from app.robots.errors import RobotNameInvalid, UnknownRobot
@@ -40,7 +40,9 @@ class RobotTokenPage(PageOf[RobotTokenView]):
     """Some tokens of a robot, newest first."""
 
 
-@router.post("/robots/{name}/enrolment-codes", status_code=201, responses=problems(RobotNameInvalid, RoleNeeded))
+@router.post(
+    "/robots/{name}/enrolment-codes", status_code=201, responses=problems(RobotNameInvalid, NoHomeForRobot, RoleNeeded)
+)
 async def make_enrolment_code(
     name: RobotName, maintainer: Maintainer, desk: DeskDep, session: SessionDep
 ) -> EnrolmentCodeView:
@@ -53,7 +55,7 @@ async def make_enrolment_code(
     "/robots/enrol",
     status_code=201,
     dependencies=[Depends(_door), per_host(Door.ENROLMENT)],
-    responses=problems(WrongEnrolmentCode, NoEnrolmentCode, HttpsRequired, CrossSite, 429),
+    responses=problems(WrongEnrolmentCode, NoEnrolmentCode, NoHomeForRobot, HttpsRequired, CrossSite, 429),
 )
 async def enrol_robot(wish: Enrolment, desk: DeskDep, database: DatabaseDep) -> Enrolled:
     """Exchange a one-time code for a robot's token; its receipts are checked by the key that it brings."""

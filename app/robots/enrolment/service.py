@@ -12,8 +12,10 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.core.server_key import ServerKey
 from app.core.settings import Settings
 from app.models import EnrolmentCode, RobotRow
-from app.robots.enrolment.errors import NoEnrolmentCode, WrongEnrolmentCode
+from app.robots.enrolment.errors import NoEnrolmentCode, NoHomeForRobot, WrongEnrolmentCode
+from app.robots.homes import no_room
 from app.robots.service import check_name, enrol, new_token
+from maps import CampusMap
 from protocol.clock import Clock
 
 LETTERS: Final = "23456789ABCDEFGHJKMNPQRSTUVWXYZ"
@@ -27,17 +29,20 @@ class EnrolmentService:
     """Makes codes and admits the robot that comes with one."""
 
     settings: Settings
+    campus: CampusMap
     key: ServerKey
     clock: Clock
 
     async def make_code(
         self, session: AsyncSession, name: str, made_by_id: str | None = None
     ) -> tuple[EnrolmentCode, str]:
-        """A new code for a robot of this name, known already or not; older ones are worthless. Raises RobotNameInvalid.
+        """A new code for a robot of this name, known already or not; older ones are worthless. Raises RobotNameInvalid
+        and NoHomeForRobot.
 
         A robot that is known keeps its token until it comes with the code.
         """
         check_name(name)
+        await self._check_room(session, name)
         now = self.clock.utc()
         code = "-".join("".join(secrets.choice(LETTERS) for _ in range(GROUP_LENGTH)) for _ in range(GROUPS))
         row = EnrolmentCode(
@@ -68,11 +73,16 @@ class EnrolmentService:
 
     async def admit(self, session: AsyncSession, name: str, public_key: str) -> str:
         """The robot's token, which is told once; those that it had before are worthless, and so is its old key."""
+        await self._check_room(session, name)
         known = await session.get(RobotRow, name)
         token = await (new_token if known else enrol)(session, self.clock, name)
         robot = await session.get_one(RobotRow, name)
         robot.public_key = public_key
         return token
+
+    async def _check_room(self, session: AsyncSession, name: str) -> None:
+        if refusal := await no_room(session, self.campus, name):
+            raise NoHomeForRobot(refusal)
 
     def _hash(self, name: str, code: str) -> str:
         # Keyed: so few letters are found by trying them all.

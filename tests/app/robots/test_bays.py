@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from websockets.exceptions import ConnectionClosed
@@ -9,6 +10,8 @@ from websockets.exceptions import ConnectionClosed
 from app.core.settings import Settings
 from app.models import Alarm, OccupancyRow, RobotRow
 from app.robots.corridors.occupancies import forget_occupancy
+from app.robots.enrolment.errors import NoHomeForRobot
+from app.robots.service import revoke_tokens
 from protocol.both_ways import Error
 from protocol.clock import SteppedClock
 from protocol.parts import Leg
@@ -109,3 +112,66 @@ async def test_a_person_who_has_looked_frees_what_a_robot_occupied(service: Serv
     async with service.app.state.parts.database.transaction() as session:
         await forget_occupancy(session, "r1")
     assert await service.rows(OccupancyRow) == []
+
+
+def takes_its_home(number: int, clock: SteppedClock) -> PlayedRobot:
+    return PlayedRobot(clock, f"r{number}", f"journal-{number}")
+
+
+async def given_home(service: Service, robot: PlayedRobot, **facts: Any) -> str | None:
+    """The home that the service tells it; its connection is closed again."""
+    robot.token = robot.token or await service.enrol(robot.name)
+    async with robot.connected(service.url, robot.token):
+        return (await robot.greet("post3_bay1", understands=("home",), **facts)).home
+
+
+async def test_each_robot_is_given_a_home_those_with_docks_first(service: Service, clock: SteppedClock) -> None:
+    robots = [takes_its_home(number, clock) for number in (1, 2, 3)]
+    homes = [await given_home(service, robot) for robot in robots]
+    assert homes == ["post5_bay2", "post1_bay2", "post4_bay2"]
+    assert [await given_home(service, robot) for robot in robots] == homes, "it keeps the home that it has"
+
+
+async def test_a_robot_gets_the_home_that_it_names_if_that_is_free(service: Service, clock: SteppedClock) -> None:
+    assert await given_home(service, takes_its_home(1, clock), home="post4_bay2") == "post4_bay2"
+    assert await given_home(service, takes_its_home(2, clock), home="post4_bay2") == "post5_bay2"
+
+
+async def test_more_robots_than_homes_are_refused_with_the_reason(service: Service, clock: SteppedClock) -> None:
+    for number in (1, 2, 3):
+        await given_home(service, takes_its_home(number, clock))
+    fourth = takes_its_home(4, clock)
+    fourth.token = await service.enrol("r4")
+    async with fourth.connected(service.url, fourth.token):
+        with pytest.raises(ConnectionClosed) as closed:
+            await fourth.greet("post3_bay1", understands=("home",))
+    assert closed.value.rcvd is not None
+    assert closed.value.rcvd.reason == "no_home_left"
+    error = fourth.heard[-1].body
+    assert isinstance(error, Error)
+    assert "the map bays has 3 homes, and each is another robot's" in error.message
+
+
+async def test_no_code_is_made_for_a_robot_without_a_home(service: Service, clock: SteppedClock) -> None:
+    parts = service.app.state.parts
+    for number in (1, 2, 3):
+        await given_home(service, takes_its_home(number, clock))
+    async with parts.database.transaction() as session:
+        with pytest.raises(NoHomeForRobot, match=r"has 3 homes.*add a bay with home = true"):
+            await parts.enrolment_service.make_code(session, "r4")
+        await parts.enrolment_service.make_code(session, "r2")  # a known one gets a new token
+
+
+async def test_a_home_is_free_when_its_robot_does_not_come_any_more(service: Service, clock: SteppedClock) -> None:
+    assert await given_home(service, takes_its_home(1, clock)) == "post5_bay2"
+    parts = service.app.state.parts
+    async with parts.database.transaction() as session:
+        await revoke_tokens(session, parts.clock, "r1")
+    assert await given_home(service, takes_its_home(2, clock)) == "post5_bay2"
+
+
+async def test_an_older_robot_is_told_no_home(service: Service, robot: PlayedRobot) -> None:
+    robot.token = await service.enrol("r1")
+    async with robot.connected(service.url, robot.token):
+        await robot.greet("post5_bay2", home="post5_bay2")
+    assert '"home"' not in next(one for one in robot.heard if one.type == "welcome").to_text()

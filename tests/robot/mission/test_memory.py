@@ -225,3 +225,9 @@ def test_a_kill_at_any_moment_loses_nothing_that_was_said_to_be_kept_and_leaves_
             assert outbox.last_seq() == outbox.waiting() == reached
             assert memory.cargo() == ((f"o{reached}",) if reached else ())
     assert process.returncode == -signal.SIGKILL
+
+
+def test_the_home_that_the_service_gave_survives_a_restart(store: Store) -> None:
+    assert Memory(store).home() is None
+    Memory(store).keep_home("post4_bay2")
+    assert Memory(store).home() == "post4_bay2"
