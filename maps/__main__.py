@@ -72,7 +72,7 @@ def _unreadable(error: MapError, as_json: bool) -> None:
 def _print_problems(path: Path, problems: tuple[Problem, ...]) -> None:
     for problem in problems:
         print(problem)
-    print(f"{path}: {len(problems)} problems" if problems else f"{path}: no problems")
+    print(f"{path}: {len(problems) or 'no'} problem{'' if len(problems) == 1 else 's'}")
 
 
 @cli.command()

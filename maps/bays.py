@@ -20,7 +20,8 @@ MARKER_BEFORE_CROSSING_M = 0.60
 """Before a post with bays: a robot that may not cross yet reads it, and stops where nothing that crosses can touch
 it."""
 WAITS_BEFORE_CROSSING_M = 0.50
-"""The axle of a robot that may not cross yet, from the post: its body (348 mm) is clear of one that turns there."""
+"""The axle of a robot that may not cross yet, from the post: it has room to stop after the marker, its body (348 mm) is
+clear of one that turns there, and a line 55° beside its own is 0.41 m away (`maps.room`)."""
 MARKER_BEFORE_BAY_M = 0.10
 """Nearer than before a post: markers of other lines stand beside the beginning of the spur."""
 MARKER_BESIDE_LINE_M = 0.35

@@ -23,15 +23,19 @@ class Bottleneck:
 
 @dataclass(frozen=True)
 class Carrying:
-    """`homes`: home places by post; there can be as many robots as there are of them together."""
+    """`homes`: home places by post; there can be as many robots as there are of them together, but one alone where
+    `bays_on_floor` is false."""
 
     robots: int
     homes: dict[str, int]
     bottleneck: Bottleneck | None
+    bays_on_floor: bool
 
     def __str__(self) -> str:
         if not self.robots:
             return "It carries no robot: no post has a home place."
+        if not self.bays_on_floor:
+            return "It carries 1 robot, since no post has a bay on the floor."
         where = ", ".join(f"{post} {homes}" for post, homes in self.homes.items())
         said = f"It carries {self.robots} robot{'s' if self.robots > 1 else ''}, one for each home place ({where})."
         if self.bottleneck is None:
@@ -48,17 +52,41 @@ def carrying(campus: CampusMap, speed_m_s: float = ASSUMED_SPEED_M_S) -> Carryin
     homes = {post.name: post.homes for post in campus.posts.values() if post.homes}
     bounds = [bound for corridor in campus.corridors if (bound := _bound(campus, corridor, speed_m_s)) is not None]
     narrowest = min(bounds, key=lambda bound: bound.deliveries_per_h, default=None)
-    return Carrying(sum(homes.values()), homes, narrowest)
+    bays_on_floor, robots = _has_bays_on_floor(campus), sum(homes.values())
+    return Carrying(robots if bays_on_floor else min(robots, 1), homes, narrowest, bays_on_floor)
 
 
 def places_problems(campus: CampusMap) -> Iterator[Problem]:
     """Where robots could not stop, or not rest."""
+    yield from _not_on_floor(campus)
     for post in campus.posts.values():
-        if post.dock is not None and post.homes == 0:
+        if post.dock is not None and post.homes == 0 and not post.spurs:
             said = f"{post.name} has a dock and no home place, so no robot could stay in the dock"
             yield error("dock_without_home", post.name, said, "Count the dock among its homes.")
         if post.bays == 0:
             yield warning("no_bay", post.name, _no_bay(campus, post), "Give it a bay, or leave it out.")
+
+
+def _not_on_floor(campus: CampusMap) -> Iterator[Problem]:
+    if not _has_bays_on_floor(campus):
+        said = (
+            "it carries one robot, since no post has a bay on the floor, and a robot that stops at a post stands where "
+            "others drive"
+        )
+        yield warning(
+            "no_bays_on_floor", campus.name, said, "Give each post a table [[post.bay]] (docs/reference/maps.md)."
+        )
+        return
+    for post in campus.posts.values():
+        if not post.spurs:
+            said = (
+                "other posts have bays on the floor and it has none: a robot that stops there stands where others drive"
+            )
+            yield warning("bay_missing", post.name, said, "Give it a table [[post.bay]].")
+
+
+def _has_bays_on_floor(campus: CampusMap) -> bool:
+    return any(post.spurs for post in campus.posts.values())
 
 
 def _no_bay(campus: CampusMap, post: Post) -> str:

@@ -10,6 +10,9 @@ class Point(NamedTuple):
     y_m: float
 
 
+Segment = tuple[Point, Point]
+
+
 def distance_m(a: Point, b: Point) -> float:
     return math.hypot(b.x_m - a.x_m, b.y_m - a.y_m)
 
@@ -50,6 +53,44 @@ def _distance_to_segment_m(point: Point, a: Point, b: Point) -> float:
     ahead_m, left_m = seen_from(a, heading_rad(a, b), point)
     beyond_m = ahead_m - min(max(ahead_m, 0.0), length_m)
     return math.hypot(beyond_m, left_m)
+
+
+def distance_between_paths_m(a: tuple[Point, ...], b: tuple[Point, ...]) -> float:
+    """0 where they cross."""
+    pairs = [(one, other) for one in pairwise(a) for other in pairwise(b)]
+    if any(cross(one, other) for one, other in pairs):
+        return 0.0
+    return min(distance_to_path_m(point, path) for ends, path in ((a, b), (b, a)) for point in ends)
+
+
+def cross(one: Segment, other: Segment) -> bool:
+    """Do the two have a point in common that is no end of either?"""
+    return _on_both_sides(one, other) and _on_both_sides(other, one)
+
+
+def _on_both_sides(line: Segment, ends: Segment) -> bool:
+    (_, left_m), (_, right_m) = (seen_from(line[0], heading_rad(*line), end) for end in ends)
+    return left_m * right_m < 0
+
+
+def part_of_path(path: tuple[Point, ...], from_m: float, to_m: float) -> tuple[Point, ...]:
+    """The piece between two lengths along the path, both within it."""
+    corners, along_m = [], 0.0
+    for here, there in pairwise(path):
+        if from_m < along_m < to_m:
+            corners.append(here)
+        along_m += distance_m(here, there)
+    return (point_along(path, from_m), *corners, point_along(path, to_m))
+
+
+def point_along(path: tuple[Point, ...], length_m: float) -> Point:
+    """The point so far along the path; beyond its end, straight on."""
+    for here, there in pairwise(path[:-1]):
+        leg_m = distance_m(here, there)
+        if length_m <= leg_m:
+            return moved(here, heading_rad(here, there), length_m)
+        length_m -= leg_m
+    return moved(path[-2], heading_rad(*path[-2:]), length_m)
 
 
 def rounded(path: tuple[Point, ...], radius_m: float, step_rad: float = math.radians(10)) -> tuple[Point, ...]:

@@ -1,12 +1,13 @@
 """The number of robots that a map carries, and why: the check says it."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
-from maps import builtin_map, find_map
+from maps import CampusMap, builtin_map, find_map
 from maps.__main__ import cli
 from maps.carrying import carrying, places_problems
 
@@ -43,11 +44,36 @@ def written(folder: Path, *, a: str = "", bays: int = 1, way: str = "") -> Path:
     return path
 
 
-def test_as_many_robots_as_home_places_docks_among_them(tmp_path: Path) -> None:
-    campus = find_map(written(tmp_path, a="homes = 2"))
+def on_the_floor(folder: Path, a: str = "", b: str = "[[post.bay]]\nbearing_deg = 90\n") -> Path:
+    """The same posts; a has a home, c a dock."""
+    home = "[[post.bay]]\nbearing_deg = 180\nhome = true\n"
+    text = POSTS.replace("bays = {bays}", b).replace("dock = {{ x_m = 20.6, y_m = 0.0, heading_deg = 0.0 }}", "{c}")
+    path = folder / "campus.toml"
+    path.write_text(text.format(a=home + a, c="[[post.bay]]\nbearing_deg = 0\nhome = true\ndock = true\n", way=""))
+    return path
+
+
+def test_as_many_robots_as_bays_that_are_homes(tmp_path: Path) -> None:
+    campus = find_map(on_the_floor(tmp_path, a="[[post.bay]]\nbearing_deg = 270\nhome = true\n"))
     assert carrying(campus).robots == 3
     assert carrying(campus).homes == {"a": 2, "c": 1}
-    assert "one for each home place (a 2, c 1)" in str(carrying(campus))
+    assert "It carries 3 robots, one for each home place (a 2, c 1)." in str(carrying(campus))
+
+
+def test_one_robot_where_no_post_has_a_bay_on_the_floor(tmp_path: Path) -> None:
+    campus = find_map(written(tmp_path, a="homes = 2"))
+    assert carrying(campus).robots == 1
+    assert str(carrying(campus)) == "It carries 1 robot, since no post has a bay on the floor."
+    (problem,) = places_problems(campus)
+    assert (problem.severity, problem.kind, problem.place) == ("warning", "no_bays_on_floor", "campus")
+    assert "a robot that stops at a post stands where others drive" in problem.sentence
+    assert "[[post.bay]]" in problem.way_out
+
+
+def test_a_post_without_a_bay_on_the_floor_among_others_that_have_one_is_named(tmp_path: Path) -> None:
+    assert [p.kind for p in places_problems(find_map(on_the_floor(tmp_path)))] == ["no_bay", "no_bay"]
+    missing, *_ = places_problems(find_map(on_the_floor(tmp_path, b="")))
+    assert (missing.severity, missing.kind, missing.place) == ("warning", "bay_missing", "b")
 
 
 def test_the_only_way_between_two_sides_bounds_what_is_delivered(tmp_path: Path) -> None:
@@ -74,16 +100,27 @@ def test_the_tunnels_are_bound_by_a_bridge() -> None:
 
 
 def test_a_post_without_a_bay_and_a_dock_without_a_home_are_named(tmp_path: Path) -> None:
-    problems = list(places_problems(find_map(written(tmp_path, bays=0))))
+    _, *problems = places_problems(find_map(written(tmp_path, bays=0)))
     assert [(problem.severity, problem.place) for problem in problems] == [("warning", "b")]
     assert "none can pass" in str(problems[0])
 
 
+def test_a_dock_in_a_bay_may_be_for_all_robots_to_charge(tmp_path: Path) -> None:
+    path = on_the_floor(tmp_path)
+    path.write_text(path.read_text().replace("home = true\ndock = true", "dock = true"))
+    assert carrying(find_map(path)).homes == {"a": 1}
+    assert "dock_without_home" not in {p.kind for p in places_problems(find_map(path))}
+    old = find_map(written(tmp_path)).posts["c"]
+    no_home = CampusMap("m", "M", {"c": replace(old, homes=0)}, ())
+    assert "dock_without_home" in {p.kind for p in places_problems(no_home)}
+
+
 def test_the_check_says_it_to_people_and_to_programs(tmp_path: Path) -> None:
-    said = CliRunner().invoke(cli, ["check", str(written(tmp_path, a="homes = 1"))])
+    path = str(on_the_floor(tmp_path))
+    said = CliRunner().invoke(cli, ["check", path])
     assert "It carries 2 robots, one for each home place (a 1, c 1)." in said.stdout
-    facts = json.loads(CliRunner().invoke(cli, ["check", "carleton", "--json"]).stdout)
-    assert facts["carries"]["robots"] == len(builtin_map("carleton").docks())
+    facts = json.loads(CliRunner().invoke(cli, ["check", path, "--json"]).stdout)
+    assert facts["carries"]["robots"] == 2
 
 
 def test_maps_that_say_nothing_of_it_keep_their_version(tmp_path: Path) -> None:

