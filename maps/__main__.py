@@ -4,6 +4,8 @@ Exit status of every command: 0 done, 1 not fit or no route, 2 something to put 
 """
 
 import json
+import math
+from collections.abc import Iterator
 from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
@@ -16,10 +18,11 @@ from rich.table import Table
 from maps.campus_map import CampusMap, Post, find_map, map_path
 from maps.carrying import ASSUMED_SPEED_M_S, Carrying, carrying
 from maps.check import check_file
+from maps.drawing import as_pdf
 from maps.errors import MapError, NoRoute, UnknownPost
 from maps.problem import Problem
 from maps.routes import shortest_route
-from maps.sheets import all_pages, as_pdf, marker_sheet
+from maps.sheets import all_pages, count_of, marker_sheet, places_with_sheets
 
 cli = typer.Typer(help=__doc__, no_args_is_help=True, add_completion=False)
 MapArgument = Annotated[Path, typer.Argument(metavar="MAP", help="A map file, or the name of one that ships.")]
@@ -80,7 +83,7 @@ def show(where: MapArgument) -> None:
     """A short table of the posts and the corridors between them."""
     campus = _map_or_exit(where)
     table = Table(title=f"{campus.title} ({campus.name}, version {campus.version})", title_justify="left")
-    for heading in ("post", "title", "place, m", "markers", "dock", "corridors, m"):
+    for heading in ("post", "title", "place, m", "markers", "bays", "corridors, m"):
         table.add_column(heading)
     for post in campus.posts.values():
         table.add_row(*_row(campus, post))
@@ -96,8 +99,17 @@ def _row(campus: CampusMap, post: Post) -> tuple[str, ...]:
         for other, corridor in campus.neighbours(post.name)
     )
     place = f"{post.x_m:g}, {post.y_m:g}"
-    name, dock = post.name + ("" if post.network else "!"), "dock" if post.dock else ""
-    return name, post.title, place, str(len(post.markers)), dock, ", ".join(ways)
+    name, markers = post.name + ("" if post.network else "!"), str(len(post.markers))
+    return name, post.title, place, markers, ", ".join(_bays(post)), ", ".join(ways)
+
+
+def _bays(post: Post) -> Iterator[str]:
+    """Each bay on the floor by its bearing, or only the dock of a map from before there were such."""
+    for bay in post.spurs:
+        uses = f"{' home' if bay.home else ''}{' dock' if bay.dock else ''}"
+        yield f"{math.degrees(bay.bearing_rad):.4g}°{uses}"
+    if post.dock and not post.spurs:
+        yield "dock"
 
 
 @cli.command()
@@ -122,26 +134,28 @@ class Format(StrEnum):
 def markers(
     where: MapArgument,
     out: Annotated[Path, typer.Option(help="The folder that the sheets go into.")] = Path("markers"),
-    format: Annotated[Format, typer.Option(help="svg: a file for each post; pdf: everything in one.")] = Format.PDF,
+    format: Annotated[
+        Format, typer.Option(help="svg: a file for each post and bay; pdf: everything in one.")
+    ] = Format.PDF,
     april_tags: Annotated[
         bool, typer.Option("--april-tags", help="With an AprilTag below each code, for robots set to read them.")
     ] = False,
-    post: Annotated[list[str] | None, typer.Option(help="Only this post; may be repeated.")] = None,
+    post: Annotated[list[str] | None, typer.Option(help="Only this post and its bays; may be repeated.")] = None,
 ) -> None:
-    """Marker sheets for the printer, at 100 %: as many of each post as it has markers."""
+    """Marker sheets for the printer, at 100 %: as many of each post and bay as it has markers."""
     campus = _map_or_exit(where)
-    posts = tuple(_posts_or_exit(campus, post))
-    sheets = sum(len(one.markers) for one in posts)
+    places = places_with_sheets(campus, _posts_or_exit(campus, post))
+    sheets = sum(len(place.markers) for place in places)
     try:
         out.mkdir(parents=True, exist_ok=True)
         if format is Format.PDF:
             path = out / f"{campus.name}.pdf"
-            path.write_bytes(as_pdf(all_pages(campus, posts, april_tags), f"Markers of {campus.title}"))
-            print(f"{sheets} sheets for {len(posts)} posts, and a page that explains: {path}")
+            path.write_bytes(as_pdf(all_pages(campus, places, april_tags), f"Markers of {campus.title}"))
+            print(f"{sheets} sheets for {count_of(places)}, and a page that explains: {path}")
         else:
-            for one in posts:
-                (out / f"{one.name}.svg").write_text(marker_sheet(one, april_tags), encoding="utf-8")
-            print(f"{len(posts)} sheets in {out}; print {sheets}, as many of each as it says")
+            for place in places:
+                (out / f"{place.name}.svg").write_text(marker_sheet(place, april_tags), encoding="utf-8")
+            print(f"{len(places)} sheets in {out}; print {sheets}, as many of each as it says")
     except OSError as error:
         typer.echo(f"{out}: the sheets cannot be written there: {error.strerror}. Give --out FOLDER.", err=True)
         raise typer.Exit(MISUSE) from error

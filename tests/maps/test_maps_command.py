@@ -62,6 +62,12 @@ def test_show_marks_assumed_lengths():
     assert "~2" not in run("show", "test_track").stdout
 
 
+def test_show_tells_the_bays_of_a_post_by_bearing_and_use():
+    shown = run("show", str(CHECKOUT / "examples/maps/two_buildings.toml"))
+    cells = {cell.strip() for line in shown.stdout.splitlines() for cell in line.split("│")}
+    assert {"90° home", "dock, 0°", "90°, 270°"} <= cells
+
+
 def test_route_prints_posts_and_metres():
     assert run("route", "test_track", "post1", "post4").stdout == "post1 → post2 → post3 → post4: 6 m\n"
 

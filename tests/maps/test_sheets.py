@@ -1,6 +1,8 @@
 """Marker sheets as they come out of the printer: rendered by another program, measured and read by the real decoder."""
 
 import re
+from collections import Counter
+from pathlib import Path
 from xml.etree import ElementTree
 
 import cv2
@@ -12,12 +14,16 @@ from typer.testing import CliRunner, Result
 
 from maps import builtin_map
 from maps.__main__ import cli
-from maps.sheets import CODE_LEFT_MM, CODE_TOP_MM, PAGE_HEIGHT_MM, PAGE_WIDTH_MM, Square, marker_page
+from maps.campus_map import FOLDER
+from maps.drawing import Square, as_pdf, as_svg
+from maps.sheets import CODE_LEFT_MM, CODE_TOP_MM, PAGE_HEIGHT_MM, PAGE_WIDTH_MM, marker_page
 from robot.drivers.camera.april_tags import TagDetector
 from robot.drivers.camera.marker_reader import MarkerReader
 from robot.drivers.camera.qr_decoders import read_with_opencv
 
 TRACK = builtin_map("test_track")
+EXAMPLES = FOLDER.parent / "examples/maps"
+BUILDINGS, SQUARE = EXAMPLES / "two_buildings.toml", EXAMPLES / "square.toml"
 PX_PER_MM = 6
 POINTS_PER_MM = 72 / 25.4
 
@@ -50,10 +56,40 @@ def test_there_is_a_page_that_explains_and_one_for_each_marker(printed):
     assert read == [[], *expected]
 
 
-@pytest.mark.parametrize("campus", ["test_track", "carleton"])
+def test_a_bay_has_sheets_as_a_post_has(tmp_path):
+    assert run(str(BUILDINGS), "--post", "library", "--post", "workshop", "--out", str(tmp_path)).exit_code == 0
+    read = [[code.text for code in zxingcpp.read_barcodes(page)] for page in paper(tmp_path / "two_buildings.pdf")]
+    counted = Counter(name for names in read for name in names)
+    # library: an approach from the corridor and from each of two bays; workshop: the same, and a docked robot's.
+    assert counted == {
+        "library": 3,
+        "library_bay1": 1,
+        "library_bay2": 1,
+        "workshop": 3,
+        "workshop_bay1": 2,
+        "workshop_bay2": 1,
+    }
+    with pypdfium2.PdfDocument(tmp_path / "two_buildings.pdf") as document:
+        words = [page.get_textpage().get_text_bounded() for page in document]
+    assert "600 mm before a post with bays" in words[0]
+    assert "100 mm before the end of a bay" in words[0]
+    assert "without bays" not in words[0]
+    assert "Library, loading bay, bay 1" in words[4]
+    assert "library_bay1 · sheet 1 of 1" in words[4]
+
+
+def test_where_no_post_has_bays_the_sheets_hang_nearer(tmp_path):
+    assert run(str(SQUARE), "--out", str(tmp_path)).exit_code == 0
+    with pypdfium2.PdfDocument(tmp_path / "square.pdf") as document:
+        words = document[0].get_textpage().get_text_bounded()
+    assert "300 mm before a post without bays" in words
+    assert "600 mm" not in words
+
+
+@pytest.mark.parametrize("campus", ["test_track", "carleton", str(BUILDINGS)])
 def test_no_word_runs_off_the_paper(campus, tmp_path):
     assert run(campus, "--out", str(tmp_path), "--april-tags").exit_code == 0
-    with pypdfium2.PdfDocument(tmp_path / f"{campus}.pdf") as document:
+    with pypdfium2.PdfDocument(tmp_path / f"{Path(campus).stem}.pdf") as document:
         for page in document:
             words = page.get_textpage()
             boxes = [words.get_rect(number) for number in range(words.count_rects())]
@@ -142,8 +178,6 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path):
 
 def test_titles_with_accents_and_signs_of_xml_come_out_whole():
     import dataclasses
-
-    from maps.sheets import as_pdf, as_svg
 
     post = dataclasses.replace(TRACK.post("post1"), title="Nideyinàn <Café> & Büro")
     page = marker_page(post)
