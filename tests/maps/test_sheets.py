@@ -78,6 +78,12 @@ def test_a_bay_has_sheets_as_a_post_has(tmp_path):
     assert "library_bay1 · sheet 1 of 1" in words[4]
 
 
+def test_a_sheet_says_how_many_of_it_its_bay_needs(tmp_path):
+    assert run(str(BUILDINGS), "--post", "workshop", "--format", "svg", "--out", str(tmp_path)).exit_code == 0
+    assert "workshop_bay1 · 2 of these at this bay" in (tmp_path / "workshop_bay1.svg").read_text(encoding="utf-8")
+    assert "workshop · 3 of these at this post" in (tmp_path / "workshop.svg").read_text(encoding="utf-8")
+
+
 def test_where_no_post_has_bays_the_sheets_hang_nearer(tmp_path):
     assert run(str(SQUARE), "--out", str(tmp_path)).exit_code == 0
     with pypdfium2.PdfDocument(tmp_path / "square.pdf") as document:
