@@ -1,4 +1,4 @@
-"""The commands of `python -m maps`: check a map, look at it, print its markers, ask for a route.
+"""The commands of `python -m maps`: check a map, look at it, print its markers and tape plan, ask for a route.
 
 Exit status of every command: 0 done, 1 not fit or no route, 2 something to put right first, which is named.
 """
@@ -23,6 +23,7 @@ from maps.errors import MapError, NoRoute, UnknownPost
 from maps.problem import Problem
 from maps.routes import shortest_route
 from maps.sheets import all_pages, count_of, marker_sheet, places_with_sheets
+from maps.tape_plan import tape_pages
 
 cli = typer.Typer(help=__doc__, no_args_is_help=True, add_completion=False)
 MapArgument = Annotated[Path, typer.Argument(metavar="MAP", help="A map file, or the name of one that ships.")]
@@ -159,6 +160,24 @@ def markers(
     except OSError as error:
         typer.echo(f"{out}: the sheets cannot be written there: {error.strerror}. Give --out FOLDER.", err=True)
         raise typer.Exit(MISUSE) from error
+
+
+@cli.command()
+def tape(
+    where: MapArgument,
+    out: Annotated[Path, typer.Option(help="The PDF that is written.")] = Path("tape-plan.pdf"),
+) -> None:
+    """The tape plan, a PDF: what to tape where, with lengths and angles, an overview and a page for each post with
+    bays."""
+    campus = _map_or_exit(where)
+    pages = tape_pages(campus)
+    try:
+        out.write_bytes(as_pdf(pages, f"Tape plan of {campus.title}"))
+    except OSError as error:
+        typer.echo(f"{out}: the plan cannot be written there: {error.strerror}. Give --out FILE.pdf.", err=True)
+        raise typer.Exit(MISUSE) from error
+    with_bays = sum(bool(post.spurs) for post in campus.posts.values())
+    print(f"{out}: the campus, and {with_bays} of {len(campus.posts)} posts, those with bays")
 
 
 def _posts_or_exit(campus: CampusMap, names: list[str] | None) -> list[Post]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from reportlab.pdfgen.canvas import Canvas
 
+Align = Literal["left", "centre", "right"]
 BLACK, WHITE = "#000000", "#ffffff"
 THIN_MM = 0.3
 
@@ -55,7 +56,7 @@ class Words:
     baseline_mm: float
     size_mm: float
     text: str
-    align: Literal["left", "centre", "right"] = "centre"
+    align: Align = "centre"
     bold: bool = False
     colour: str = BLACK
     on_white: bool = False

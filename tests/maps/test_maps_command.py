@@ -50,7 +50,7 @@ def test_an_unreadable_map_ends_with_exit_2_and_names_line_and_column(write_map)
     assert answer["error"]["place"] == "line 2, column 9"
 
 
-@pytest.mark.parametrize("command", ["show", "markers", "check"])
+@pytest.mark.parametrize("command", ["show", "markers", "tape", "check"])
 def test_an_unknown_map_is_answered_with_those_that_ship(command):
     result = run(command, "nowhere")
     assert result.exit_code == 2
