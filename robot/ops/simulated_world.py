@@ -39,8 +39,12 @@ class SavedWorld:
             raise WorldNotKept(path, error) from None
 
     def _restore(self, saved: dict[str, Any]) -> None:
-        self._robot.place(Pose(saved["x_m"], saved["y_m"], saved["heading_rad"]))
+        self.restore_place(Pose(saved["x_m"], saved["y_m"], saved["heading_rad"]))
         self._robot.sag(saved["battery_ratio"])
+
+    def restore_place(self, pose: Pose) -> None:
+        """Go on from here; no person has carried the robot."""
+        self._robot.body.place(pose.x_m, pose.y_m, pose.heading_rad)
         self.restored = True
 
     def step_until(self, now: float) -> None:

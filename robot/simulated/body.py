@@ -16,8 +16,9 @@ from robot.simulated.base.open_interface import OpenInterface
 from robot.simulated.base.packets import Readings
 from robot.simulated.base.serial_line import SerialLine, spoiled, thinned
 from robot.simulated.faults import Faults
-from robot.simulated.obstacles import BUMPER_RADIUS_M, Contact, light_signals
+from robot.simulated.obstacles import BUMPER_RADIUS_M, Contact, contact, light_signals
 from robot.simulated.pins import DiodeMount, LinePins
+from robot.simulated.true_poses import TruePose
 from robot.simulated.world import World
 
 STEP_S = 0.005
@@ -60,6 +61,8 @@ class Body:
         self.line = line
         self.bumped_until_s = {"left": now, "right": now}
         self.docked = False
+        self.handled = 0
+        """How often a person has carried or pushed the robot."""
         self._seek: SeekDock | None = None
         self._line_random = Random(f"{seed}/line")
         self._slot_random = Random(f"{seed}/contacts")
@@ -79,8 +82,13 @@ class Body:
         """As other robots run into it: see `obstacles.Obstacle`."""
         return self.base.x_m, self.base.y_m, BUMPER_RADIUS_M
 
+    @property
+    def true_pose(self) -> TruePose:
+        base = self.base
+        return TruePose(self.now, base.x_m, base.y_m, base.heading_rad, self.handled)
+
     def place(self, x_m: float, y_m: float, heading_rad: float) -> None:
-        """Put the robot down here, as a person would."""
+        """The robot stands here from now on."""
         self.base.place(x_m, y_m, heading_rad)
         self._look_around()
         self._slot()
@@ -104,6 +112,7 @@ class Body:
             self.pins.drive(self.base.x_m, self.base.y_m, self.base.heading_rad)
         if self.interface.has_more:
             self.line.send(spoiled(self.interface.take(), self.faults, self._line_random), self.interface.baud)
+        self.world.moved(self)
 
     # Movement ----------------------------------------------------------------------------------------------------
 
@@ -161,9 +170,11 @@ class Body:
             return True
         if not self._contacts:
             return False
-        here = self.world.contacts(self, self.base.x_m, self.base.y_m, heading)
-        there = self.world.contacts(self, x_m, y_m, heading)
-        return any(new.gap_m < 0 and new.gap_m < old.gap_m for old, new in zip(here, there, strict=True))
+        for near in self._contacts:
+            there = contact(near.obstacle, x_m, y_m, heading)
+            if there.gap_m < 0 and there.gap_m < contact(near.obstacle, self.base.x_m, self.base.y_m, heading).gap_m:
+                return True
+        return False
 
     def _look_around(self) -> None:
         pose = (self.base.x_m, self.base.y_m, self.base.heading_rad)

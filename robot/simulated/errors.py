@@ -4,10 +4,13 @@ SimulatedWorldError
 ├── UnknownSwitch   no fault or door command has this name
 ├── WrongValue      the name is right, the value is not
 ├── UnknownStart    the robot cannot begin there
+├── WorldFileUnusable   several robots cannot share a world in this file
+├── BodyTaken       another process moves this robot there
 └── WorldStopped    it lives no longer: a step has failed
 """
 
 from collections.abc import Iterable
+from pathlib import Path
 
 
 class SimulatedWorldError(Exception):
@@ -33,6 +36,22 @@ class UnknownStart(SimulatedWorldError):
 
     def __init__(self, start: str, why: str) -> None:
         super().__init__(f"A robot cannot start at {start!r}: {why.rstrip('.')}. Say 'dock', a post, or POST:TOWARDS.")
+
+
+class WorldFileUnusable(SimulatedWorldError):
+    """The file cannot be made or read, or is full."""
+
+    def __init__(self, path: Path, problem: str) -> None:
+        super().__init__(f"{path}: robots cannot share a world there: {problem}. Name another file with --world.")
+
+
+class BodyTaken(SimulatedWorldError):
+    """A robot has one body, and one process that moves it."""
+
+    def __init__(self, name: str, path: Path) -> None:
+        super().__init__(
+            f"{name} is in the world {path} already, and its process runs. Stop that one, or give another --name."
+        )
 
 
 class WorldStopped(SimulatedWorldError):

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import chain
 from random import Random
 from typing import Any
 
@@ -29,7 +30,7 @@ from maps.sheets import (
 )
 from maps.tags import TAG_SIZE_MM
 from robot.simulated.faults import Faults
-from robot.simulated.obstacles import Obstacle
+from robot.simulated.obstacles import BASE_HEIGHT_M, BOX_HEIGHT_M, BOX_RADIUS_M, BUMPER_RADIUS_M, Obstacle
 
 BACKGROUNDS = 4
 Frame = NDArray[np.uint8]
@@ -90,9 +91,11 @@ class Renderer:
         seed: int,
         tags: Mapping[str, int] | None = None,
         obstacles: Callable[[], Iterable[Obstacle]] = tuple,
+        robots: Callable[[], Iterable[Obstacle]] = tuple,
     ) -> None:
-        """`tags` holds the number of each post's AprilTag; people among the `obstacles` hide what is behind them."""
-        self._markers, self._tags, self._obstacles = markers, tags or {}, obstacles
+        """`tags` holds the number of each post's AprilTag. People among the `obstacles`, and `robots`, hide what is
+        behind them."""
+        self._markers, self._tags, self._obstacles, self._robots = markers, tags or {}, obstacles, robots
         self._seed = seed
         self._mount = mount
         self._faults = faults
@@ -123,25 +126,25 @@ class Renderer:
     def _marker_frame(self, view: View) -> Frame:
         """Objects farther off are drawn first."""
         frame = self._other(self._walls)
-        in_view: list[tuple[float, Marker, NDArray[np.float32]] | tuple[float, _PersonInView, None]] = []
+        in_view: list[tuple[float, Marker, NDArray[np.float32]] | tuple[float, _InView, None]] = []
         for marker in self._markers:
             corners = sheet_corners(marker, view, self._mount)
             if corners is not None:
                 in_view.append((_seen(marker.x_m, marker.y_m, view, self._mount)[0], marker, corners))
-        in_view += [(one.away_m, one, None) for one in _people(self._obstacles(), view, self._mount)]
+        standing = chain(_people(self._obstacles(), view), _bodies(self._robots(), view))
+        in_view += [(one.away_m, one, None) for one in _in_view(standing, view, self._mount)]
         if not in_view:
             return frame
         frame = frame.copy()
         for _, thing, place in sorted(in_view, key=lambda one: -one[0]):
-            if isinstance(thing, _PersonInView):
-                self._draw_somebody(frame, thing)
+            if isinstance(thing, _InView):
+                self._draw_dark(frame, thing)
             elif place is not None:
                 self._draw(frame, thing, place, view)
         return frame
 
-    def _draw_somebody(self, frame: Frame, one: "_PersonInView") -> None:
-        """From shoes to beyond the upper edge: the lens is at the height of a knee."""
-        part = frame[: one.floor_px, one.left_px : one.right_px]
+    def _draw_dark(self, frame: Frame, one: "_InView") -> None:
+        part = frame[one.top_px : one.floor_px, one.left_px : one.right_px]
         if not part.size:
             return
         row, column = self._random.randrange(64), self._random.randrange(64)
@@ -276,20 +279,37 @@ def _make_dirty(page: Frame, share: float, random: Random) -> None:
 
 
 @dataclass(frozen=True)
-class _PersonInView:
-    """A person in the picture: how far away, from which column to which, and where the shoes are."""
+class _InView:
+    """A person or a part of a robot in the picture: how far away, from which column to which, from which row to the
+    floor."""
 
     away_m: float
     left_px: int
     right_px: int
+    top_px: int
     floor_px: int
 
 
-def _people(obstacles: Iterable[Obstacle], view: View, mount: CameraMount) -> Iterator[_PersonInView]:
+Cylinder = tuple[float, float, float, float]  # x, y; radius; height
+
+
+def _people(obstacles: Iterable[Obstacle], view: View) -> Iterator[Cylinder]:
+    """To beyond the upper edge: the lens is at the height of a knee. Walls are part of the background."""
     for one in obstacles:
         x_m, y_m, radius_m = one.nearest(view.x_m, view.y_m)
-        if not radius_m:  # a wall
-            continue
+        if radius_m:
+            yield x_m, y_m, radius_m, math.inf
+
+
+def _bodies(robots: Iterable[Obstacle], view: View) -> Iterator[Cylinder]:
+    for one in robots:
+        x_m, y_m, _ = one.nearest(view.x_m, view.y_m)
+        yield x_m, y_m, BUMPER_RADIUS_M, BASE_HEIGHT_M
+        yield x_m, y_m, BOX_RADIUS_M, BOX_HEIGHT_M
+
+
+def _in_view(standing: Iterable[Cylinder], view: View, mount: CameraMount) -> Iterator[_InView]:
+    for x_m, y_m, radius_m, height_m in standing:
         away_m, right_m = _seen(x_m, y_m, view, mount)
         if not radius_m + SEEN_FROM_M / 2 < away_m < PEOPLE_TO_M:
             continue
@@ -299,8 +319,14 @@ def _people(obstacles: Iterable[Obstacle], view: View, mount: CameraMount) -> It
             for edge in (middle - half, middle + half)
         )
         if right > 0 and left < mount.width_px:
-            floor_px = min(mount.height_px, round(mount.height_px / 2 + mount.focal_px * mount.height_m / away_m))
-            yield _PersonInView(away_m - radius_m, max(0, round(left)), min(mount.width_px, round(right)), floor_px)
+            columns = max(0, round(left)), min(mount.width_px, round(right))
+            yield _InView(away_m - radius_m, *columns, _row(height_m, away_m, mount), _row(0.0, away_m, mount))
+
+
+def _row(height_m: float, away_m: float, mount: CameraMount) -> int:
+    """The picture's row in which something so high above the floor is seen."""
+    row = mount.height_px / 2 - mount.focal_px * (height_m - mount.height_m) / away_m
+    return round(min(max(row, 0.0), mount.height_px))
 
 
 def _code_picture(modules: NDArray[np.uint8], px_per_module: int, quiet: int) -> Frame:

@@ -5,6 +5,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 BUMPER_RADIUS_M = 0.3485 / 2
+BASE_HEIGHT_M = 0.092
+# The letter box upon the base, with the mast of the camera [A].
+BOX_RADIUS_M, BOX_HEIGHT_M = 0.125, 0.30
 # The bumper is the front half; a touch within this angle of straight ahead presses both ends [A].
 BOTH_ENDS_RAD = math.radians(12)
 BUMPER_RAD = math.radians(95)

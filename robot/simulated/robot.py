@@ -76,6 +76,7 @@ class SimulatedRobot:
             seed,
             {post: tag for tag, post in tag_numbers(campus).items()} if options.camera.april_tags else None,
             lambda: self.world.obstacles,
+            lambda: self.world.others(self._body),
         )
         self._renderer = renderer
         self.camera = SimulatedCamera(renderer, self._view, lambda: self._body.now, self.faults)
@@ -182,11 +183,13 @@ class SimulatedRobot:
         self.battery.sag(ratio)
 
     def place(self, pose: Pose) -> None:
-        """Carry the robot somewhere else."""
+        """A person carries the robot somewhere else."""
+        self._body.handled += 1
         self._body.place(pose.x_m, pose.y_m, pose.heading_rad)
 
     def push(self, ahead_mm: float) -> None:
         """Shove the robot along its heading; its encoders count up, whichever way."""
+        self._body.handled += 1
         self._body.base.push(ahead_mm)
         self._body.place(self._body.base.x_m, self._body.base.y_m, self._body.base.heading_rad)
 
