@@ -2,7 +2,7 @@
 
 import math
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from bdi import Agent, Program, parse_program
@@ -42,6 +42,7 @@ from robot.simulated import (
     Motion,
     Options,
     Pack,
+    SharedWorld,
     SimulatedHost,
     SimulatedRobot,
     World,
@@ -61,6 +62,8 @@ class Simulation:
     """The byte machine behind an object and not behind a pseudo-terminal: quicker, for stepped time."""
     world: World | None = None
     """A world with a map, people and other robots, to put this one into; None: one of its own."""
+    shared: Path | None = None
+    """The file of a world in which robots of other processes are, too."""
     motion: Motion = field(default_factory=Motion)
     """How well the wheels do what they are told."""
 
@@ -182,10 +185,17 @@ def _devices(
 ) -> Devices:
     if simulation is None:
         return _real_devices(settings, clock, closing)
+    shared = None
+    if simulation.shared:
+        shared = SharedWorld(campus, simulation.shared, settings.name, simulation.seed)
+        closing.callback(shared.close)
+        simulation = replace(simulation, world=shared)
     robot = simulated_robot(settings, campus, clock, simulation)
     closing.callback(robot.close)
     saved = SavedWorld(robot, settings.data / "world.json")
     closing.callback(saved.close)
+    if shared and shared.left:
+        saved.restore_place(shared.left)
 
     def open_port() -> SerialPort:
         return robot.memory_port() if simulation.in_memory else open_serial(robot.port_path)

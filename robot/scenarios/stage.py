@@ -23,7 +23,7 @@ from robot.scenarios.judging import Ending, verdict
 from robot.scenarios.places import is_in
 from robot.scenarios.scenario import NoNetwork, RobotRow, Scenario
 from robot.scenarios.watching import Watch
-from robot.simulated import Motion, World
+from robot.simulated import CollisionJudge, Motion, World
 
 LOOK_HZ: Final = 10.0
 """How often people look, the service answers and the truth is compared."""
@@ -65,6 +65,7 @@ class Stage:
         self.handings = handings(self.letters.values(), scenario.seed)
         self.crowd = Crowd(self.campus, scenario.walker, scenario.stander)
         self.watch = Watch(track, self.service)
+        self.judge = CollisionJudge()
         self.happenings = Happenings(self.campus, self.service, lambda who, what: self.say(self.clock.now(), who, what))
         self.happenings.add(scenario, self.actors)
         self._told = 0
@@ -177,6 +178,7 @@ class Stage:
         for actor in self.actors:
             actor.link.tick(now)
         self.watch.tick(self.actors, self.crowd.present, now)
+        self.judge.look({actor.name: actor.body.body.true_pose for actor in self.actors})
         self._tell(now)
         for watcher in self.watchers:
             watcher(now)
@@ -208,7 +210,7 @@ class Stage:
         """The result so far."""
         return Ending(
             verdicts=[verdict(letter, self.service) for letter in self.letters.values()],
-            violations=[*self.watch.violations, *self._errors()],
+            violations=[*self.watch.violations, *map(str, self.judge.overlaps), *self._errors()],
             bumps=sum(self.watch.bumps.values()),
             searches=sum(self.watch.searches.values()),
             home=all(actor.body.docked for actor in self.actors),

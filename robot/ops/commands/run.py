@@ -38,6 +38,9 @@ def run(  # typer reads the options from here
         float | None, typer.Option(min=0.1, help="Simulation: at most so many seconds per second.")
     ] = None,
     door: Annotated[Path | None, typer.Option(help="Simulation: Unix socket into the world.")] = None,
+    world: Annotated[
+        Path | None, typer.Option(help="Simulation: file of a world that robots of several processes share.")
+    ] = None,
     agent: Annotated[Path | None, typer.Option(help="Another agent program (AgentSpeak).")] = None,
     percepts: Annotated[PerceptMode | None, typer.Option(help="Default: drain with --agent, else latest.")] = None,
     tell: Annotated[list[str] | None, typer.Option(help="A belief told to the agent; may be repeated.")] = None,
@@ -74,7 +77,7 @@ def run(  # typer reads the options from here
         try:
             settings = _settings(config, asked, simulated, battery, closing)
             configure_logs(settings.log_file)
-            simulation = _simulation(settings, start, battery, seed) if simulated else None
+            simulation = _simulation(settings, start, battery, seed, world) if simulated else None
             done = run_once(settings, clock_for(simulated, clock, options, settings, closing), simulation, options)
         except (ConfigError, CampusMapError, BdiError, RobotError, SimulatedWorldError) as problem:
             refuse(str(problem))
@@ -94,10 +97,12 @@ def _settings(
     return load_settings(config, asked)
 
 
-def _simulation(settings: Settings, start: str | None, battery: float | None, seed: int) -> Simulation:
+def _simulation(
+    settings: Settings, start: str | None, battery: float | None, seed: int, world: Path | None
+) -> Simulation:
     """A foreign program need not know that it stands in a dock: it begins on the line, on the way to the first post."""
     if start is None and settings.mind.program:
         campus = find_map(settings.map)
         first = next(iter(campus.posts))
         start = f"{campus.neighbours(first)[0][0].name}:{first}"
-    return Simulation(start, battery, seed)
+    return Simulation(start, battery, seed, shared=world)
