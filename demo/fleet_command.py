@@ -20,6 +20,9 @@ def fleet(
     restart_after: Annotated[
         float, typer.Option(min=1, help="Simulated minutes until a robot whose process died is started again.")
     ] = 10,
+    ghosts: Annotated[
+        bool, typer.Option("--ghosts", help="Let bodies pass through each other, and count it instead of ending.")
+    ] = False,
     seed: Annotated[int, typer.Option(help="The same seed, the same orders.")] = 1,
     port: Annotated[int, typer.Option(help="TCP port of the pages; 0 takes a free one.")] = 8000,
     data: Annotated[Path | None, typer.Option(help="Folder to keep everything in; default: a temporary one.")] = None,
@@ -34,5 +37,5 @@ def fleet(
         speed = speed or (ONCE_SPEED if once else WATCHED_SPEED)
         run = {"once": once, "minutes": minutes, "as_json": as_json, "speed": speed, "seed": seed, "port": port}
         wanted = {"campus": campus_of(campus, robots), "scale": scale, "restart_after_s": 60 * restart_after}
-        code = demonstrate_fleet(data, **run, **wanted)
+        code = demonstrate_fleet(data, **run, **wanted, ghosts=ghosts)
     raise typer.Exit(code)

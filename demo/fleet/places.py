@@ -1,21 +1,20 @@
-"""True places of robots, by their simulated worlds: no two may ever be in one corridor.
+"""True places of robots: bodies may not overlap, and no two may ever be in one corridor.
 
-The bodies are simulated apart from each other: they would drive through each other and feel nothing. So it is looked
-at here, without the service and without what robots believe.
+It is read from the simulated world, without the service and without what robots believe.
 """
 
-import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
 
 from demo.settings import DemoFailed
 from maps import CampusMap, Corridor
 from maps.geometry import Point, distance_m, distance_to_path_m
+from robot.simulated import CollisionJudge, PoseLog, TruePose, WorldFile
 
 AT_POST_M = 0.8
-"""So near to a post a robot counts as at it, on the line, in its bay or in its dock."""
+"""So near to a post a robot counts as at it; also in its bays and docks."""
 
 
 @dataclass(frozen=True)
@@ -29,20 +28,25 @@ class Somewhere:
         return f"at {self.post}" if self.corridor is None else f"in {self.corridor.name}"
 
 
-@dataclass
 class TruePlaces:
-    """The true places of all robots. `files`: where each one's world keeps its pose, twice a simulated second."""
+    """The true places of all robots in the world of `file`; their way is written into `log`.
 
-    campus: CampusMap
-    files: Mapping[str, Path]
-    seen: dict[str, Somewhere] = field(default_factory=dict)
-    moves: int = 0
-    """How often a robot went from a post into a corridor, or out of it."""
-    most_at_once: int = 0
-    """How many corridors had a robot in them at one moment, at most."""
-    looks: int = 0
-    met: int = 0
-    """How often two were in one corridor."""
+    `ghosts`: two in one place are counted and raise nothing.
+    """
+
+    def __init__(self, campus: CampusMap, file: Path, log: Path, ghosts: bool = False) -> None:
+        self._campus, self._world, self._log, self._ghosts = campus, WorldFile(file), PoseLog(log), ghosts
+        self.judge = CollisionJudge()
+        self.seen: dict[str, Somewhere] = {}
+        self.moves = 0
+        """How often a robot went from a post into a corridor, or out of it."""
+        self.most_at_once = 0
+        """How many corridors had a robot in them at one moment, at most."""
+        self.looks = 0
+        self.met = 0
+        """How often two came into one corridor."""
+        self._poses: dict[str, TruePose] = {}
+        self._inside: set[tuple[str, str, str]] = set()
 
     @property
     def inside(self) -> int:
@@ -50,41 +54,56 @@ class TruePlaces:
         return sum(here.corridor is not None for here in self.seen.values())
 
     def look(self) -> None:
-        """See where everybody is now. Raises DemoFailed if two are where only one may be."""
-        for robot, file in self.files.items():
-            point = _point_in(file)
-            if point is None:
-                continue
-            here = somewhere(self.campus, point)
-            self.moves += robot in self.seen and self.seen[robot] != here
-            self.seen[robot] = here
+        """See where every robot is now. Raises DemoFailed if two are where only one may be."""
+        poses = self._world.poses()
+        self._log.note(poses)
+        self.judge.look(poses)
+        for robot, pose in poses.items():
+            if robot not in self._poses or _moved(pose, self._poses[robot]):
+                self._place(robot, somewhere(self._campus, Point(pose.x_m, pose.y_m)))
+        self._poses = poses
         self.looks += 1
         self.most_at_once = max(self.most_at_once, self.inside)
-        for one, other, corridor in collisions(self.seen):
-            self.met += 1
-            raise DemoFailed(f"{one} and {other} are both in the corridor {corridor}: they would have collided.")
+        self._check()
+
+    def _place(self, robot: str, here: Somewhere) -> None:
+        self.moves += robot in self.seen and self.seen[robot] != here
+        self.seen[robot] = here
+
+    def _check(self) -> None:
+        inside = set(meetings(self.seen))
+        self.met += len(inside - self._inside)
+        self._inside = inside
+        if self._ghosts:
+            return
+        for overlap in self.judge.overlaps:
+            raise DemoFailed(f"{overlap}. The way of every robot is in true_poses.csv.")
+        for one, other, corridor in inside:
+            raise DemoFailed(f"{one} and {other} are both in the corridor {corridor}.")
+
+    def close(self) -> None:
+        self._log.close()
+        self._world.close()
 
 
 def somewhere(campus: CampusMap, point: Point) -> Somewhere:
-    """The post that is near, else the corridor whose tape is nearest."""
+    """The post that is near or whose spur is the nearest tape, else the corridor whose tape is nearest."""
     nearest = min(campus.posts.values(), key=lambda post: distance_m(post.point, point))
     if distance_m(nearest.point, point) <= AT_POST_M:
         return Somewhere(post=nearest.name)
-    return Somewhere(corridor=min(campus.corridors, key=lambda one: distance_to_path_m(point, one.tape)))
+    line = min(campus.track.corridors, key=lambda one: distance_to_path_m(point, one.tape))
+    if line in campus.corridors:
+        return Somewhere(corridor=line)
+    return Somewhere(post=campus.address_of(line.a))
 
 
-def collisions(places: Mapping[str, Somewhere]) -> Iterator[tuple[str, str, str]]:
+def meetings(places: Mapping[str, Somewhere]) -> Iterator[tuple[str, str, str]]:
     """Every two robots in one corridor that is for one at a time, and its name."""
     inside = {robot: here.corridor for robot, here in places.items() if here.corridor is not None}
-    for (one, corridor), (other, same) in combinations(inside.items(), 2):
+    for (one, corridor), (other, same) in combinations(sorted(inside.items()), 2):
         if corridor == same and corridor.following_s is None:
             yield one, other, corridor.name
 
 
-def _point_in(file: Path) -> Point | None:
-    """None as long as that world has not begun."""
-    try:
-        saved = json.loads(file.read_bytes())
-    except (FileNotFoundError, ValueError):
-        return None
-    return Point(saved["x_m"], saved["y_m"])
+def _moved(pose: TruePose, before: TruePose) -> bool:
+    return (pose.x_m, pose.y_m) != (before.x_m, before.y_m)

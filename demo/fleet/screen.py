@@ -37,8 +37,9 @@ class FleetScreen(Terminal):
         for line in (
             f"[bold]Campus Mail, the fleet[/], at [link]{demo.url}[/]: {len(demo.homes)} robots on the map "
             f"{escape(demo.campus.map.title)}, its corridors 1 : {1 / demo.scale:.3g} of their length",
-            "The bodies are simulated, each in a world of its own. That no two are ever in one corridor is looked at "
-            "by their true places; if two were, this would end with an error.",
+            "The bodies are simulated, in one world. If two overlapped or were in one corridor, by their true places, "
+            "this would end with an error.",
+            *(("Bodies are ghosts: they pass through each other, which is counted and ends nothing.",) * demo.ghosts),
         ):
             self._console.print(line, soft_wrap=True)
         sender, recipient, *_ = map(address, demo.campus.offices)
@@ -77,7 +78,8 @@ class FleetScreen(Terminal):
         ended = ", ".join(f"{count} {state}" for state, count in sorted(life.ended.items())) or "none ended"
         figures = (
             f"{self._clock.utc().astimezone():%H:%M:%S}, {self._clock.speed:.1f} times as fast   "
-            f"orders: {len(life.orders)} open, {ended}   in corridors now: {places.inside}, never two in one"
+            f"orders: {len(life.orders)} open, {ended}   in corridors now: {places.inside}   "
+            f"bodies touched: {places.judge.touches} times"
         )
         return Group(Text(figures, style="bold"), table, *(Text(line, style="dim") for line in self._events))
 

@@ -10,6 +10,7 @@ from demo.settings import Demonstration
 from maps.campus_map import read_map
 from maps.map_file import load_map_file, toml_of
 from maps.scaling import scaled
+from robot.simulated import WorldFile
 
 WATCHED_SPEED, ONCE_SPEED = 8.0, 30.0
 """Simulated seconds per second at most; the robots' processes lower it to what they keep up with."""
@@ -29,7 +30,7 @@ simulated_charger_ma = 15000
 
 @dataclass(frozen=True)
 class FleetDemo(Demonstration):
-    """One with several robots, each in a simulated world of its own. Its doors lie in the folder `door`."""
+    """One with several robots in one simulated world. Its doors lie in the folder `door`."""
 
     campus: Campus
     minutes: float | None = None
@@ -37,6 +38,8 @@ class FleetDemo(Demonstration):
     seed: int = 1
     restart_after_s: float = RESTART_AFTER_S
     """By the demonstration's clock."""
+    ghosts: bool = False
+    """Bodies pass through each other; how often they would have touched is counted, and ends nothing."""
 
     @property
     def homes(self) -> Mapping[str, str]:
@@ -66,16 +69,22 @@ class FleetDemo(Demonstration):
         self.door.mkdir(mode=0o700, exist_ok=True)
         Path(self.map).write_text(toml_of(scaled(load_map_file(self.campus.file), self.scale)), encoding="utf-8")
         read_map(self.map)
+        WorldFile.create(self.world_file, self.ghosts).close()
         for robot, home in self.homes.items():
             self._config_of(robot).write_text(ROBOT_CONFIG.format(home=home))
 
     def robot_command(self, robot: str) -> list[str]:
-        more = {"--config": str(self._config_of(robot)), "--start": f"dock:{self.homes[robot]}"}
+        more = {
+            "--config": str(self._config_of(robot)),
+            "--start": f"dock:{self.homes[robot]}",
+            "--world": str(self.world_file),
+        }
         return self.command_of(robot, self.folder / robot, self.door / robot, more)
 
-    def world_file(self, robot: str) -> Path:
-        """Where the robot's simulated world keeps its true place."""
-        return self.folder / robot / "world.json"
+    @property
+    def world_file(self) -> Path:
+        """Where the simulated world keeps the true places of all robots."""
+        return self.folder / "world"
 
     def _config_of(self, robot: str) -> Path:
         return self.folder / f"{robot}.toml"
