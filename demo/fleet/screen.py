@@ -20,6 +20,8 @@ from demo.terminal import Terminal
 from protocol.clock import SharedClock
 
 LAST_EVENTS = 12
+SOLID = "If two overlapped or were in one corridor, by their true places, this would end with an error."
+GHOSTS = "They pass through each other; how often is counted by their true places, and ends nothing."
 TO_FETCH = {"assigned", "to_sender", "at_sender"}
 
 
@@ -37,9 +39,7 @@ class FleetScreen(Terminal):
         for line in (
             f"[bold]Campus Mail, the fleet[/], at [link]{demo.url}[/]: {len(demo.homes)} robots on the map "
             f"{escape(demo.campus.map.title)}, its corridors 1 : {1 / demo.scale:.3g} of their length",
-            "The bodies are simulated, in one world. If two overlapped or were in one corridor, by their true places, "
-            "this would end with an error.",
-            *(("Bodies are ghosts: they pass through each other, which is counted and ends nothing.",) * demo.ghosts),
+            f"The bodies are simulated, in one world. {GHOSTS if demo.ghosts else SOLID}",
         ):
             self._console.print(line, soft_wrap=True)
         sender, recipient, *_ = map(address, demo.campus.offices)
