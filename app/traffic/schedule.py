@@ -13,7 +13,8 @@ import structlog
 from app.core.settings import Settings
 from app.traffic.robot_locations import OF_ITS_OWN, Hold, RobotLocation, TrafficSnapshot
 from fleet.eta.arrivals import Estimates
-from fleet.schedule.controller import Denied, Granted, TrafficController, Waits
+from fleet.schedule.answers import ComeIn, Denied, Granted, Waits
+from fleet.schedule.controller import TrafficController
 from fleet.schedule.journey import Goal
 from fleet.schedule.network import Lane, Network, network_of
 from maps import CampusMap, CampusMapError, Corridor, corridor_name, shortest_route
@@ -189,6 +190,9 @@ class TrafficSchedule:
     def _verdict(self, one: RobotLocation, knows_detours: bool, now_s: float) -> Verdict:
         assert one.request is not None  # noqa: S101  # only those are asked
         first = one.request.first
+        if isinstance(self.controller.next_move(one.robot, now_s), ComeIn):
+            # Home places of maps without bays on the floor are nowhere: who is to make room has done so.
+            self.controller.comes_in(one.robot, one.post, now_s)
         leads = self.controller.leads(one.robot)
         leg = self._names(leads) if leads is not None else None
         asked = leg if leg in first else first[0]

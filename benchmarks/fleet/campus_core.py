@@ -20,7 +20,7 @@ from benchmarks.fleet.campus_told import Told
 from benchmarks.fleet.world import CollisionError
 from fleet.charging.curve import FULL
 from fleet.eta.durations import Kind
-from fleet.schedule.controller import CLAIMED, Denied, Granted, TrafficController, Waits
+from fleet.schedule.controller import CLAIMED, ComeIn, Denied, Granted, TrafficController, Waits
 from fleet.schedule.journey import Goal
 from fleet.schedule.network import Lane
 from protocol.parts import Leg, Part, Purpose
@@ -241,6 +241,8 @@ class Core:
 
     def _answer(self, known: Known, claim: Claim) -> None:
         self._follow_own_goal(known, claim)
+        if isinstance(self.controller.next_move(known.name, self.now_s), ComeIn):
+            self.controller.comes_in(known.name, known.post, self.now_s)  # home places here are nowhere on the floor
         wanted: Lane | None = known.lane or self._lane(claim.legs[0])
         while wanted is not None:
             leads = self.controller.leads(known.name)

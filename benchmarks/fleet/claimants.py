@@ -17,7 +17,7 @@ from benchmarks.fleet.claimants_dispatch import Dispatch, nearest, number_of
 from benchmarks.fleet.demand import HANDLING_S, Saturated
 from benchmarks.fleet.grounds import Ground
 from benchmarks.fleet.world import CollisionError
-from fleet.schedule.controller import Denied, Granted, TrafficController
+from fleet.schedule.controller import ComeIn, Denied, Granted, TrafficController
 from fleet.schedule.journey import Goal
 from fleet.schedule.network import Lane
 
@@ -139,6 +139,7 @@ class Campus:
 
     def _claim(self, robot: Robot) -> None:
         """The way that the map calls shortest, or what it is told instead."""
+        self._make_room(robot)
         lane: Lane | None = self._shortest(robot)
         while lane is not None:
             answer = self.controller.claims(robot.name, *self._ends(lane), self.now_s)
@@ -152,6 +153,11 @@ class Campus:
             lane = answer.instead
         self._look_at(robot)
         self._later(AGAIN_S, partial(self._go_on, robot))
+
+    def _make_room(self, robot: Robot) -> None:
+        """Home places here are nowhere on the floor: a robot that is to go from a bay to its own is there at once."""
+        if isinstance(self.controller.next_move(robot.name, self.now_s), ComeIn):
+            self.controller.comes_in(robot.name, self.network.posts[robot.post], self.now_s)
 
     def _handle(self, robot: Robot) -> None:
         robot.busy = True
@@ -222,6 +228,9 @@ class Campus:
     # What the service answers later.
 
     def _grant(self) -> None:
+        for robot in self.robots.values():
+            if robot.claim is not None:
+                self._make_room(robot)
         answers = [(self.robots[name], answer) for name, answer in self.controller.grants(self.now_s)]
         granted = [(robot, answer.lane) for robot, answer in answers if isinstance(answer, Granted)]
         for robot, lane in granted:

@@ -127,7 +127,7 @@ def served_s(tasks: Tasks, schedule: Schedule) -> dict[str, float]:
 def _served(task: Task, journey: Journey) -> Iterable[tuple[str, float]]:
     goals = iter(task.goals)
     for number, leg in enumerate(journey.legs):
-        now_s = task.start.ready_s if number == 0 else leg.arrive_s
+        now_s = task.start.ready_s if number == 0 else leg.stands_s
         for goal in islice(goals, leg.goals):
             now_s = max(now_s, goal.not_before_s) + goal.handling_s
             yield goal.key, now_s

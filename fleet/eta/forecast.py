@@ -9,7 +9,8 @@ from dataclasses import replace
 from typing import Final, NamedTuple
 
 from fleet.eta.intervals import Interval, interval_of
-from fleet.schedule.execution import Travel, retimed
+from fleet.schedule.course import Travel
+from fleet.schedule.execution import retimed
 from fleet.schedule.journey import Goal, Journey, Start, Task, Through
 from fleet.schedule.network import Lane, Network
 
@@ -52,7 +53,7 @@ def reached_s(task: Task, journey: Journey) -> Iterator[tuple[str, float]]:
     goals = iter(task.goals)
     at_s = task.start.ready_s
     for number, leg in enumerate(journey.legs):
-        at_s = at_s if number == 0 else leg.arrive_s
+        at_s = max(at_s, leg.stands_s) if number == 0 else leg.stands_s
         for _ in range(leg.goals):
             goal = next(goals)
             at_s = max(at_s, goal.not_before_s)
@@ -70,7 +71,9 @@ def _drawn_start(robot: str, start: Start, chance: Chance) -> Start:
         return start
     entered_s, before = start.entered_s, list[Through]()
     for one in start.before:  # let into several at once, it comes to one after the other
-        entered_s = one.arrives_s if one.lane is None else chance.arrives_s(robot, one.lane, entered_s)
-        before.append(one._replace(arrives_s=entered_s))
+        arrives_s = one.arrives_s if one.lane is None else chance.arrives_s(robot, one.lane, entered_s)
+        before.append(one._replace(arrives_s=arrives_s))
+        entered_s = arrives_s + one.over_s
     arrives_s = chance.arrives_s(robot, start.lane, entered_s)
-    return replace(start, arrives_s=arrives_s, ready_s=arrives_s, before=tuple(before))
+    ready_s = arrives_s + start.ready_s - start.arrives_s
+    return replace(start, arrives_s=arrives_s, ready_s=ready_s, before=tuple(before))

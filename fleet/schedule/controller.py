@@ -1,66 +1,43 @@
 """The traffic of a campus as it is now: who stands where, what each is to do, and who may enter which corridor.
 
     controller.joins("r1", post="mailroom", home="mailroom", at_home=True, now_s=0.0)
-    controller.give("r1", [Goal(network.number_of("library"), 60.0)], now_s=0.0)   whether there is a schedule with it
+    controller.give("r1", [Goal(network.number_of("loeb"), 60.0)], now_s=0.0)      whether there is a schedule with it
     controller.claims("r1", "mailroom", "loeb", now_s=1.0)                         Granted, Waits or Denied
     controller.grants(now_s=9.0)                                                   who waited, and waits no longer
-    controller.cleared("r1", "mailroom", "loeb", now_s=301.0)
+    controller.crossed("r1", "mailroom", now_s=13.0)                               wholly in the corridor
+    controller.next_move("r1", now_s=299.0)                                        GoOn or ComeIn, at its end
+    controller.comes_in("r1", "loeb", now_s=300.0)                                 LetIn or Waits
+    controller.cleared("r1", "mailroom", "loeb", now_s=301.0)                      out of it, on the crossing
+    controller.crossed("r1", "loeb", now_s=311.0)                                  wholly in its bay
 
-In memory and pure: what it knows can be built again from the grants, the places and the goals of all robots. Nothing
-here takes a corridor from a robot because time has passed.
+What a robot holds is free again when it reports that it is elsewhere, and not before: the crossing and the bay that it
+leaves with `crossed`, a corridor with `cleared` (or `crossed`, if that is what is heard). No grant, no time and no
+question frees anything. Reports may come twice. Where the crossing of a post takes no time it is nobody's: a bay is
+left with the grant, `cleared` says that the robot stands at the end, and `crossed` and `comes_in` are not needed.
+
+In memory and pure: what it knows can be built again from the grants, the places and the goals of all robots.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from itertools import pairwise
 from math import inf
 from random import Random
 from typing import Final
 
-from fleet.schedule.execution import caught_up, one_behind_the_other, retimed, waits_for
-from fleet.schedule.journey import Goal, Journey, Start, Task, without_first
+from fleet.schedule.answers import Answer, ComeIn, Denied, GoOn, Granted, LetIn, Move, Waits
+from fleet.schedule.execution import moves_over, next_move_s, waits_to_cross
+from fleet.schedule.journey import Goal, Journey, Task, goes_aside, without_aside, without_first
+from fleet.schedule.live import ROUNDS, LiveSchedule, UnsoundSchedule
 from fleet.schedule.network import Lane, Network
-from fleet.schedule.participant import Participant, is_full, open_network
-from fleet.schedule.planning import Schedule, first_plan, improve, insert, plan, plan_what_can_be
-from fleet.schedule.under_way import further, through
-from fleet.schedule.validation import problems
+from fleet.schedule.participant import Participant, is_full
+from fleet.schedule.planning import Schedule
+from fleet.schedule.under_way import aside, crossed, further, is_on, let_in_after, out_of, placed, through
 
-ROUNDS: Final = 10
-"""So often something better is looked for after each change, unless the caller does that himself."""
+__all__ = ["CLAIMED", "ComeIn", "Denied", "GoOn", "Granted", "LetIn", "TrafficController", "UnsoundSchedule", "Waits"]
+
 CLAIMED: Final = "claimed"
 """The key of a goal that no order gave: a robot goes somewhere for reasons of its own, to a dock for instance."""
-
-
-@dataclass(frozen=True)
-class Granted:
-    """The corridor may be entered, and a bay at its end is kept."""
-
-    lane: Lane
-
-
-@dataclass(frozen=True)
-class Waits:
-    """Not yet. `robots` have to go on before; `until_s`: about when, by the schedule."""
-
-    lane: Lane
-    robots: tuple[str, ...]
-    until_s: float
-
-
-@dataclass(frozen=True)
-class Denied:
-    """Not this way: the schedule leads over `instead` (None: nowhere, no way is open)."""
-
-    lane: Lane
-    instead: Lane | None
-
-
-Answer = Granted | Waits | Denied
-
-
-class UnsoundSchedule(RuntimeError):
-    """The search has made what the independent check refuses: a mistake of ours. No robot is let in by it; a caller
-    that keeps the controller builds it anew."""
+SOON_S: Final = 5.0
+"""A robot waits so long at the end of its corridor, if it can go straight on then."""
 
 
 class TrafficController:
@@ -68,162 +45,220 @@ class TrafficController:
 
     def __init__(self, network: Network, rng: Random | None = None) -> None:
         self._whole = network
-        self._closed: frozenset[str] = frozenset()
-        self._rng = rng or Random(0)
-        self._robots: dict[str, Participant] = {}
-        self._journeys: dict[str, Journey] = {}
-        self._network = network
+        self._live = LiveSchedule(network, rng or Random(0))
 
     # What there is.
 
     @property
     def network(self) -> Network:
-        """As it is open now: without closed corridors, and without what frozen robots stand in."""
-        return self._network
+        """As it is open now: without closed corridors, and without what robots that stand still are in."""
+        return self._live.network
 
     def tasks(self, now_s: float) -> dict[str, Task]:
         """Every robot that can be planned for, as it is now: of its goals those that can be reached."""
-        tasks = {name: robot.task(self._network, now_s) for name, robot in self._robots.items() if not robot.frozen}
-        return one_behind_the_other(tasks)
+        return self._live.tasks(now_s)
 
     def journeys(self, now_s: float) -> dict[str, Journey]:
         """The schedule from now on."""
-        return retimed(self._network, self.tasks(now_s), self._journeys)
+        return self._live.journeys(now_s)
 
     def goals(self, robot: str) -> tuple[Goal, ...]:
         return self._robots[robot].goals
 
     def out_of_reach(self) -> frozenset[str]:
         """Robots of which some goal, or home, cannot be reached as long as the ways are closed that are closed."""
-        return frozenset(
-            name for name, robot in self._robots.items() if not robot.frozen and robot.lacks(self._network)
-        )
+        robots = self._robots.items()
+        return frozenset(name for name, one in robots if not one.frozen and (one.is_shut_in or one.lacks(self.network)))
 
     # What people and dispatch do.
 
     def joins(
-        self, robot: str, *, post: str, home: str | None, at_home: bool, now_s: float, towards: Sequence[str] = ()
+        self,
+        robot: str,
+        *,
+        post: str,
+        home: str | None,
+        at_home: bool,
+        now_s: float,
+        towards: Sequence[str] = (),
+        on_crossing: bool = False,
+        to_home: bool = False,
+        is_let_in: bool = False,
     ) -> None:
-        """A robot is there that was not: switched on, or carried there. Where every bay is taken it stands beside them,
-        as the person who carried it there must have put it. `towards`: it may be on its way from its post over
-        these."""
+        """A robot is there that was not: switched on, carried there, or known from before a restart. It stands at its
+        home place at this post (`at_home`), or in a bay there; where every bay is taken beside them, as the person who
+        carried it there must have put it.
+
+        `towards`: the corridors that it was let into and has not reported to be out of, by the posts they lead to. At
+        its home post among these `to_home` keeps its home place for it, else a bay is kept. `is_let_in`: the crossing
+        at the end of the last is its own, too.
+        `on_crossing`: it has not reported to be off the crossing of the post, on its way out of its bay or home there
+        into the first of these corridors; without any, from a corridor into its bay or home, or, if it is not `at_home`
+        but on its way `to_home`, from its bay there to make room.
+        Robots that follow each other in a corridor join in the order in which they were let in."""
         before = self._robots.pop(robot, None)
-        stops = [self._whole.number_of(one) for one in (post, *towards)]
-        lanes = [self._whole.lane(*leg) for leg in pairwise(stops)]
-        start = Start(stops[0], (at_home and not lanes) or self._is_full(stops[0]), now_s, now_s)
-        for lane in lanes:
-            start = further(start, lane, at_home=self._is_full(lane.end), now_s=now_s)
         home_number = None if home is None else self._whole.number_of(home)
+        first, *stops = (self._whole.number_of(one) for one in (post, *towards))
+        over_s = self._whole.crossing_s[first] if on_crossing else 0.0
+        start = placed(first, at_home=(at_home and (on_crossing or not stops)) or self._is_full(first), now_s=now_s)
+        if on_crossing and not stops:
+            start = aside(start, over_s, now_s) if to_home and not at_home else is_on(start, over_s, now_s)
+        for end in stops:
+            lane, is_kept = self._whole.lane(start.post, end), to_home and end == home_number
+            start = further(start, lane, at_home=is_kept or self._is_full(end), now_s=now_s, over_s=over_s)
+            over_s = self._whole.crossing_s[end]
+        if stops and is_let_in:
+            start = is_on(start, over_s, now_s)
+        start = let_in_after(start, [one.start for one in self._robots.values()])
         self._robots[robot] = Participant(home_number, start, before.goals if before else ())
-        self._plan_all(now_s)
+        self._live.plan_all(now_s)
 
     def leaves(self, robot: str, now_s: float) -> None:
         """A robot is taken away: what it had is free."""
         self._robots.pop(robot, None)
-        self._plan_all(now_s)
+        self._live.plan_all(now_s)
 
     def give(self, robot: str, goals: Sequence[Goal], now_s: float, rounds: int = ROUNDS) -> bool:
         """These are its goals from now on, all of them, if there is a schedule with them; else nothing changes. Those
         of a frozen robot are planned for when it goes on."""
-        its, before = self._robots[robot], replace(self._robots[robot])
-        its.wants(goals, now_s)
-        if its.frozen:
-            return True
-        its.goals_wait = False
-        tasks, kept = self.tasks(now_s), self.journeys_of_others(robot, now_s)
-        found = plan(self._network, tasks, [robot], kept) or insert(self._network, tasks, kept, robot)
-        found = found or first_plan(self._network, tasks, self._rng)
-        if found is None or not self._takes(tasks, self._better(tasks, found, rounds)):
-            self._robots[robot] = before
-            return False
-        return True
+        return self._live.give(robot, goals, now_s, rounds)
 
     def adopt(self, goals: Mapping[str, Sequence[Goal]], schedule: Schedule, now_s: float) -> bool:
         """The same for several robots with a schedule that was worked out elsewhere, if it can still be carried out:
         since then robots may have entered corridors, but no others than it says."""
-        before = {name: replace(robot) for name, robot in self._robots.items()}
-        for name, theirs in goals.items():
-            self._robots[name].wants(self._robots[name].as_told(theirs), now_s)
-        tasks = self.tasks(now_s)
-        journeys = caught_up(self._network, tasks, schedule.journeys)
-        if journeys is not None and self._takes(tasks, replace(schedule, journeys=journeys)):
-            return True
-        self._robots = before
-        return False
+        return self._live.adopt(goals, schedule, now_s)
 
     def close(self, corridor: str, now_s: float) -> None:
         """Let no robot into it any more; one that is in it drives on."""
-        self._closed |= {corridor}
-        self._plan_all(now_s)
+        self._live.closed |= {corridor}
+        self._live.plan_round_what_shut(now_s)
 
     def open(self, corridor: str, now_s: float) -> None:
-        self._closed -= {corridor}
-        self._plan_all(now_s)
+        self._live.closed -= {corridor}
+        self._live.plan_all(now_s)
 
     def freeze(self, robot: str, now_s: float) -> None:
-        """It stays where it is, dead or paused: its corridor and its bay stay taken, and all others go round it."""
-        self._robots[robot].frozen = True
-        self._robots[robot].claim = None
-        self._plan_all(now_s)
+        """It stays where it is, dead or paused: its corridor, its bay, and the crossing that it may be on stay taken.
+        All others go round it; those in corridors that lead to that crossing turn round."""
+        its = self._robots[robot]
+        its.frozen, its.claim, its.asks_in = True, None, False
+        self._live.plan_round_what_shut(now_s)
 
     def unfreeze(self, robot: str, now_s: float) -> None:
         """It goes on from where it was."""
         self._robots[robot].frozen = False
         self._robots[robot].begins(now_s)
-        self._plan_all(now_s)
+        self._live.plan_all(now_s)
 
-    # What robots say.
+    # What robots ask.
 
     def claims(self, robot: str, start: str, end: str, now_s: float) -> Answer:
-        """May this robot enter the corridor between these posts? What waits is answered again by `grants`; what is
-        denied is asked no more. Raises LookupError if there is no such corridor."""
-        lane = self._whole.lane(self._whole.number_of(start), self._whole.number_of(end))
-        self._robots[robot].claim = lane
-        if not self._leads_through(robot, lane) and all(goal.key == CLAIMED for goal in self._robots[robot].goals):
+        """May this robot enter the corridor between these posts, over the crossing before it? From the end of another
+        corridor that means straight on, and is asked when the robot is there. What waits is answered again by `grants`;
+        what is denied is asked no more. Raises LookupError if there is no such corridor."""
+        lane, its = self._lane(start, end), self._robots[robot]
+        its.claim, its.asks_in = lane, False
+        if not self._leads_through(robot, lane) and all(goal.key == CLAIMED for goal in its.goals):
             self.give(robot, (Goal(lane.end, 0.0, key=CLAIMED),), now_s, rounds=0)  # it goes for reasons of its own
-        return self._answer(robot, now_s)
+        return self._answer(robot, lane, now_s)
 
     def goes_on(self, robot: str, way: Sequence[tuple[str, str]], now_s: float) -> list[Lane]:
         """It was let into a corridor, and means to take this way from there without a stop: as much of it is granted,
-        too, as no robot enters before it. All of that is its own until it is cleared, one after the other."""
+        too, as no robot enters before it, with the crossings between. All of that is its own until it reports to have
+        left it, one after the other."""
         granted = []
         for start, end in way:
-            lane = self._whole.lane(self._whole.number_of(start), self._whole.number_of(end))
+            lane = self._lane(start, end)
             if not self._may_go_on(robot, lane, now_s):
                 break
             self._lets_in(robot, lane, now_s)
             granted.append(lane)
         return granted
 
+    def comes_home(self, robot: str) -> bool:
+        """At the end of all that it was let into its home place is kept for it, and no bay."""
+        return self._robots[robot].start.at_home
+
+    def comes_in(self, robot: str, post: str, now_s: float) -> LetIn | Waits:
+        """May this robot cross into its bay or home place at this post: from the end of its corridor, instead of
+        straight on; or, to make room, from its bay there to its home place, where it still waits for what it has
+        claimed? What waits is answered again by `grants`."""
+        its, number = self._robots[robot], self._whole.number_of(post)
+        its.asks_in = True
+        if its.start.lane is not None:
+            its.claim = None
+        return self._lets_come_in(robot, number, now_s)
+
     def gives_up_claim(self, robot: str) -> None:
         self._robots[robot].claim = None
+        self._robots[robot].asks_in = False
 
-    def grants(self, now_s: float) -> list[tuple[str, Granted | Denied]]:
-        """Those who waited and may enter now, or are led another way now. Asked after every change, and when a time
+    def grants(self, now_s: float) -> list[tuple[str, Granted | LetIn | Denied]]:
+        """Those who waited and may go on now, or are led another way now. Asked after every change, and when a time
         that was named has come."""
-        waiting = [name for name, robot in self._robots.items() if robot.claim is not None]
-        answers = [(name, self._answer(name, now_s)) for name in waiting]
-        return [(name, answer) for name, answer in answers if not isinstance(answer, Waits)]
+        waiting = [name for name, one in self._robots.items() if one.claim is not None or one.asks_in]
+        if self._whole.has_crossings:
+            waiting.sort(key=self._moves_s)
+        answers: list[tuple[str, Granted | LetIn | Denied]] = []
+        for name in waiting:
+            its = self._robots[name]
+            lane = its.claim
+            answer = (
+                self._lets_come_in(name, its.start.post, now_s) if lane is None else self._answer(name, lane, now_s)
+            )
+            if not isinstance(answer, Waits):
+                answers.append((name, answer))
+        return answers
+
+    def next_move(self, robot: str, now_s: float) -> Move | None:
+        """What it is to do where it is, or where it comes to. At the end of its corridor it goes straight on if it has
+        nothing to do there and the schedule has it enter the next corridor about when it is there; else it comes in.
+        None: it stays."""
+        start, journey = self._robots[robot].start, self._live.planned.get(robot)
+        if journey is None:
+            return None
+        if not start.rests and (start.crosses or not self._goes_straight_on(robot, now_s)):
+            return ComeIn(start.post, start.at_home)
+        if goes_aside(journey):
+            return ComeIn(start.post, at_home=True)
+        lane = self._coming(journey)
+        return None if lane is None else GoOn(lane)
+
+    def leads(self, robot: str) -> Lane | None:
+        """The corridor that the schedule has this robot enter next: home, when there is nothing else to do, or aside.
+        None: it stays."""
+        journey = self._live.planned.get(robot)
+        return None if journey is None else self._coming(journey)
+
+    # What robots report.
 
     def cleared(self, robot: str, start: str, end: str, now_s: float) -> None:
-        """The robot has left this corridor and stands at its end. Nothing happens if it was not in it."""
-        lane = self._whole.lane(self._whole.number_of(start), self._whole.number_of(end))
-        its = self._robots[robot]
-        if any(lane == through.lane for through in its.start.before):
-            its.start = through(its.start, lane, now_s)
-        elif its.start.lane == lane:
-            its.start = replace(its.start, lane=None, arrives_s=-inf, ready_s=now_s, before=())
-            if its.goals and (its.goals[0].key, its.goals[0].post) == (CLAIMED, lane.end):
-                its.goals = its.goals[1:]
-            self._try_again(now_s)
+        """The robot has left this corridor and is on the crossing at its end, or beyond. Where crossings take no time
+        it stands there. Nothing happens if it was not in it."""
+        lane, its = self._lane(start, end), self._robots[robot]
+        passed = next((one.lane for one in its.start.before if one.lane and one.lane.corridor == lane.corridor), None)
+        if passed is not None:
+            its.start = through(its.start, passed, now_s)
+        elif its.start.lane is not None and its.start.lane.corridor == lane.corridor:
+            its.start = out_of(its.start, self._whole.crossing_s[its.start.post], now_s)
+            self._has_moved(robot, now_s)
+
+    def crossed(self, robot: str, post: str, now_s: float) -> None:
+        """The robot is off the crossing of this post, wholly in its bay or home place there, or in the next corridor:
+        the crossing and what it left are free. Nothing happens if the crossing was not its own."""
+        its, before = self._robots[robot], self._robots[robot].start
+        its.start = crossed(before, self._whole.number_of(post), now_s)
+        if its.start != before:
+            self._has_moved(robot, now_s)
 
     def docked(self, robot: str) -> None:
-        """It has gone from a bay to its home place at the same post."""
+        """It reports that it has gone from a bay to its home place at the same post."""
         its = self._robots[robot]
-        if its.start.post == its.home and not its.start.at_home and its.start.lane is None:
-            its.start = replace(its.start, at_home=True)
-            if self._docks_next(robot):
-                self._journeys[robot] = without_first(self._journeys[robot])
+        if its.start.post == its.home and its.start.lane is None and (its.start.crosses or not its.start.at_home):
+            was_sent = its.start.crosses
+            its.start = placed(its.start.post, at_home=True, now_s=its.start.ready_s, entered_s=its.start.entered_s)
+            if not was_sent and goes_aside(self._live.planned[robot]):
+                self._live.planned[robot] = without_first(self._live.planned[robot])
 
     def served(self, robot: str, key: str, now_s: float) -> None:
         """One of its goals is behind it, or given up: then it need not go where it was to be served."""
@@ -232,7 +267,7 @@ class TrafficController:
         was_first = its.goals[1:] == left and self._serves_now(robot) > 0
         its.wants(left, now_s)
         if not was_first:
-            self._plan_all(now_s)
+            self._live.plan_all(now_s)
 
     def stands(self, robot: str, post: str, now_s: float) -> None:
         """It says that it is at this post. Where it was thought elsewhere, all is planned anew."""
@@ -241,104 +276,114 @@ class TrafficController:
             home = None if its.home is None else self._whole.posts[its.home]
             self.joins(robot, post=post, home=home, at_home=False, now_s=now_s)
 
-    def leads(self, robot: str) -> Lane | None:
-        """The corridor that the schedule has this robot enter next: home, when there is nothing else to do, or aside.
-        None: it stays."""
-        journey = self._journeys.get(robot)
-        return next((leg.lane for leg in journey.legs[1:] if leg.lane is not None), None) if journey else None
-
     # How it is done.
 
-    def journeys_of_others(self, robot: str, now_s: float) -> dict[str, Journey]:
-        """The schedule from now on without this robot, but with the room that it leaves it to come home. Timed as if
-        it were not there others might shut it in, and then nothing more could be put in."""
-        return {name: journey for name, journey in self.journeys(now_s).items() if name != robot}
+    @property
+    def _robots(self) -> dict[str, Participant]:
+        return self._live.robots
 
-    def _answer(self, robot: str, now_s: float) -> Answer:
-        its, journey = self._robots[robot], self._journeys.get(robot)
-        lane = its.claim
-        if lane is None:
-            raise LookupError(f"{robot} has claimed nothing")
-        if self._docks_next(robot):
-            self.docked(robot)
-            journey = self._journeys[robot]
+    def _lane(self, start: str, end: str) -> Lane:
+        return self._whole.lane(self._whole.number_of(start), self._whole.number_of(end))
+
+    def _answer(self, robot: str, lane: Lane, now_s: float) -> Answer:
+        its, journey = self._robots[robot], self._live.planned.get(robot)
+        # Who leaves makes room as well as who goes aside.
+        journey = None if journey is None else without_aside(journey)
         coming = journey.legs[1] if journey is not None and len(journey.legs) > 1 else None
-        if coming is None or coming.lane != lane:
+        if journey is None or coming is None or coming.lane != lane:
             its.claim = None
-            return Denied(lane, None if coming is None else coming.lane)
-        others = self._waits_for(robot, now_s)
-        if others or its.start.lane is not None:
-            return Waits(lane, others, self.journeys(now_s)[robot].legs[1].enter_s)
+            return Denied(lane, None if journey is None else self._coming(journey))
+        others = self._live.waits_for(robot, now_s, journey)
+        if others or not self._may_leave(its):
+            return Waits(lane, others, self._live.journeys(now_s)[robot].legs[1].enter_s)
         unserved = self._serves_now(robot) > 0
+        self._live.planned[robot] = journey
         self._lets_in(robot, lane, now_s)
         if unserved:  # it goes without them, and has to come back
-            self._plan_all(now_s)
-        return Granted(lane)
+            self._live.plan_all(now_s)
+        return Granted(lane, coming.at_home)
 
-    def _waits_for(self, robot: str, now_s: float) -> tuple[str, ...]:
-        starts = {name: other.start for name, other in self._robots.items()}
-        # The frozen are among them, so that their bays must not be missing a second time.
-        return tuple(dict.fromkeys(waits_for(self._whole, starts, self._journeys, robot, now_s)))
+    def _may_leave(self, its: Participant) -> bool:
+        """It stands; or it is at the end of its corridor, where it may cross without a stop."""
+        start = its.start
+        may_pass = self._whole.crossing_s[start.post] > 0.0 and not (start.before or start.crosses or its.turns)
+        return start.rests or may_pass
 
     def _lets_in(self, robot: str, lane: Lane, now_s: float) -> None:
-        its, coming = self._robots[robot], self._journeys[robot].legs[1]
+        its, coming = self._robots[robot], self._live.planned[robot].legs[1]
         its.claim = None
-        its.start = further(its.start, lane, at_home=coming.at_home, now_s=now_s)
-        self._journeys[robot] = without_first(self._journeys[robot])
+        over_s = self._whole.crossing_s[lane.start]
+        its.start = further(its.start, lane, at_home=coming.at_home, now_s=now_s, over_s=over_s)
+        self._live.planned[robot] = without_first(self._live.planned[robot])
+
+    def _lets_come_in(self, robot: str, post: int, now_s: float) -> LetIn | Waits:
+        its, journey = self._robots[robot], self._live.planned.get(robot)
+        start, over_s = its.start, self._whole.crossing_s[post]
+        makes_room = start.rests and journey is not None and goes_aside(journey)
+        if start.post == post and (start.crosses or (start.rests and not makes_room)):
+            its.asks_in = False  # it has been let in before
+            return LetIn(post, start.at_home)
+        others = self._waits_to_cross(robot, post, now_s)
+        if start.post != post or start.before or journey is None or others or post in self.network.shut:
+            return Waits(start.lane, others, now_s if journey is None else self._moves_s(robot))
+        its.asks_in = False
+        if makes_room:
+            its.start = aside(start, over_s, now_s)
+            self._live.planned[robot] = without_first(journey)
+        else:
+            its.start = is_on(start, over_s, now_s)
+        return LetIn(post, its.start.at_home)
+
+    def _waits_to_cross(self, robot: str, post: int, now_s: float) -> tuple[str, ...]:
+        starts = {name: other.start for name, other in self._robots.items()}
+        return tuple(dict.fromkeys(waits_to_cross(self._whole, starts, self._live.planned, robot, post, now_s)))
 
     def _may_go_on(self, robot: str, lane: Lane, now_s: float) -> bool:
         """Where robots follow each other the order in which they go in is only known when they do."""
-        start, legs = self._robots[robot].start, self._journeys[robot].legs
+        start, legs = self._robots[robot].start, self._live.planned[robot].legs
         if len(legs) < 2 or legs[1].lane != lane or legs[0].goals or start.at_home or start.lane is None:
             return False
         passed = {one.post for one in start.before} | {start.post, start.lane.start}
         follows = lane.following_s is not None or start.lane.following_s is not None
-        return not follows and lane.end not in passed and not self._waits_for(robot, now_s)
+        if follows or lane.end in passed or self._live.waits_for(robot, now_s):
+            return False
+        others = (other for name, other in self._live.planned.items() if name != robot)
+        first_s = min((at_s for other in others for at_s in moves_over(self._whole, other, lane.start)), default=inf)
+        return first_s > legs[1].enter_s
+
+    def _goes_straight_on(self, robot: str, now_s: float) -> bool:
+        start, journey = self._robots[robot].start, self._live.planned[robot]
+        lane = journey.legs[1].lane if len(journey.legs) > 1 else None
+        if lane is None or not self._may_leave(self._robots[robot]) or self._serves_now(robot) > 0:
+            return False
+        if start.lane is not None and start.lane.corridor == lane.corridor:
+            return False
+        there_s = max(now_s, start.arrives_s)
+        is_soon = self._live.journeys(now_s)[robot].legs[1].enter_s <= there_s + SOON_S
+        return is_soon or not self._live.waits_for(robot, now_s)
+
+    def _moves_s(self, robot: str) -> float:
+        return next_move_s(self._robots[robot].start, self._live.planned.get(robot))
+
+    def _has_moved(self, robot: str, now_s: float) -> None:
+        its = self._robots[robot]
+        its.turns = its.turns and its.start.lane is not None
+        if its.start.rests and its.goals and (its.goals[0].key, its.goals[0].post) == (CLAIMED, its.start.post):
+            its.goals = its.goals[1:]
+        self._live.try_again(now_s)
 
     def _is_full(self, post: int) -> bool:
         return is_full(self._whole, post, self._robots.values())
 
-    def _docks_next(self, robot: str) -> bool:
-        journey = self._journeys.get(robot)
-        return journey is not None and len(journey.legs) > 1 and journey.legs[1].lane is None
-
     def _serves_now(self, robot: str) -> int:
         """Count its goals that are to be served where it is."""
-        journey = self._journeys.get(robot)
+        journey = self._live.planned.get(robot)
         later = 0 if journey is None else sum(leg.goals for leg in journey.legs[1:])
         return len(self._robots[robot].goals) - later
 
     def _leads_through(self, robot: str, lane: Lane) -> bool:
-        journey = self._journeys.get(robot)
+        journey = self._live.planned.get(robot)
         return journey is not None and any(leg.lane == lane for leg in journey.legs[1:])
 
-    def _plan_all(self, now_s: float) -> None:
-        """Plan all anew, as far as it can be: closures or robots have changed."""
-        self._network = open_network(self._whole, self._closed, self._robots.values())
-        for robot in self._robots.values():
-            robot.goals_wait = robot.stays = False
-        wanted = self.tasks(now_s)
-        found, planned = plan_what_can_be(self._network, wanted, self._rng)
-        for name, task in planned.items():
-            self._robots[name].goals_wait = len(task.goals) < len(wanted[name].goals)
-            self._robots[name].stays = task.home != wanted[name].home
-        if not (self._takes(planned, self._better(planned, found, ROUNDS)) or self._takes(planned, found)):
-            raise UnsoundSchedule("; ".join(problems(self._network, planned, found.journeys)))
-
-    def _try_again(self, now_s: float) -> None:
-        """A robot has moved: one that could not be planned for may have a way now."""
-        if any(robot.stays for robot in self._robots.values()):
-            self._plan_all(now_s)
-        for name, robot in self._robots.items():
-            if robot.goals_wait and not robot.frozen:
-                self.give(name, robot.goals, now_s, rounds=0)
-
-    def _better(self, tasks: Mapping[str, Task], found: Schedule, rounds: int) -> Schedule:
-        left = iter(range(rounds))
-        return improve(self._network, tasks, found, self._rng, lambda: next(left, None) is not None)
-
-    def _takes(self, tasks: Mapping[str, Task], schedule: Schedule) -> bool:
-        if problems(self._network, tasks, schedule.journeys):
-            return False
-        self._journeys = dict(schedule.journeys)
-        return True
+    def _coming(self, journey: Journey) -> Lane | None:
+        return next((leg.lane for leg in journey.legs[1:] if leg.lane is not None), None)

@@ -36,9 +36,10 @@ def evacuate(network: Network, tasks: Mapping[str, Task], most_states: int = MOS
     if moves is None:
         return None
     legs = {robot: [standing(tasks[robot].start)] for robot in robots}
-    for number, move in enumerate(moves):
-        at_s = float(number)
-        legs[robots[move.robot]].append(Leg(move.lane, at_s, at_s, move.post, move.at_home, 0, at_s))
+    all_stand_s = max((task.start.ready_s for task in tasks.values()), default=0.0)
+    for number, move in enumerate(moves, start=1):
+        at_s, over_s = all_stand_s + number, network.crossing_s[move.post]
+        legs[robots[move.robot]].append(Leg(move.lane, at_s, at_s, move.post, move.at_home, 0, at_s, over_s))
     untimed = {robot: Journey(tuple(ways[:1]), tuple(ways[1:]), 0.0) for robot, ways in legs.items()}
     idle = {robot: Task(task.start, (), task.home) for robot, task in tasks.items()}
     return retimed(network, idle, untimed)
@@ -73,7 +74,7 @@ def _moves(
     for robot, (task, place) in enumerate(zip(tasks, places, strict=True)):
         if place == AT_HOME:
             continue  # no robot has to come out for another to get home
-        if place == task.home:
+        if place == task.home and place not in network.shut:
             yield _moved(places, robot, AT_HOME), _Move(robot, None, place, True, last)
         for lane in network.lanes[place]:
             if lane.end == task.home:

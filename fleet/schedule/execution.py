@@ -3,21 +3,19 @@
 At every corridor and at every post robots enter in the order of the schedule. Of all entries to come the earliest can
 always be made: all before it have been made, and what they hold is given back without anybody else's doing. So delays
 never end in a deadlock, they only move the times (`retimed`).
+
+A crossing is held only by who has been let into what lies behind it, so that it is always given back. No order is
+needed there for the schedule to be carried out; a robot that is about to come is let over first if it is to be first,
+but for one that is late no other waits (`waits_for`).
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import inf
 
-from fleet.schedule.journey import Goal, Journey, Leg, Start, Task, ready_after, without_first
-from fleet.schedule.network import Lane, Network
-
-Travel = Callable[[str, Lane], float]
-"""How long a robot takes through a lane."""
-
-
-class OutOfOrderError(ValueError):
-    """In this order a robot enters a post before another has left a bay there."""
+from fleet.schedule.course import Course, OutOfOrderError, Travel
+from fleet.schedule.journey import Journey, Leg, Start, Task, standing, without_first
+from fleet.schedule.network import Network
 
 
 def may_enter(
@@ -36,24 +34,72 @@ def waits_for(
 ) -> Iterator[str]:
     """Return the robots that must go on before this one may enter its next corridor: none, if it may."""
     mine = journeys[robot].legs[1]
-    for other, start in starts.items():
-        if other == robot:
-            continue
+    others = {other: start for other, start in starts.items() if other != robot}
+    for other, start in others.items():
         coming = journeys[other].legs[1:] if other in journeys else ()
-        held = (start, *start.on_the_way())
         if any(_goes_before((leg, other), (mine, robot)) for leg in coming) or any(
-            _is_in_the_way(one, mine, now_s) for one in held
+            _is_in_the_way(network, one, mine, now_s) for one in (start, *start.on_the_way())
         ):
             yield other
     if not mine.at_home:
         there = [
             other
-            for other, start in starts.items()
+            for other, start in others.items()
             for one in (start, *start.on_the_way())
-            if other != robot and _stands_at(one, mine.post)
+            if _stands_at(one, mine.post)
         ]
         if len(there) >= network.bays[mine.post]:
             yield from there
+    yield from waits_to_cross(
+        network, starts, journeys, robot, mine.post if mine.lane is None else mine.lane.start, now_s
+    )
+
+
+def waits_to_cross(
+    network: Network, starts: Mapping[str, Start], journeys: Mapping[str, Journey], robot: str, post: int, now_s: float
+) -> Iterator[str]:
+    """Return the robots whose the crossing of this post is, or that come to it before this one would be over and are
+    to go first."""
+    over_s = network.crossing_s[post]
+    if not over_s:
+        return
+    mine_s = next_move_s(starts[robot], journeys.get(robot))
+    for other, start in starts.items():
+        if other == robot:
+            continue
+        if any(crossing == post for crossing, _ in start.crossings()):
+            yield other
+        elif start.lane is not None and start.post == post and not start.before:
+            comes_soon = now_s <= start.arrives_s < now_s + over_s
+            is_first = next_move_s(start, journeys.get(other)) < mine_s
+            if _is_ahead(start, starts[robot]) or (comes_soon and is_first):
+                yield other
+
+
+def _is_ahead(one: Start, other: Start) -> bool:
+    """Tell if both are in one lane, this one nearer to its end."""
+    was_first = (one.entered_s, one.arrives_s) < (other.entered_s, other.arrives_s)
+    return one.lane is not None and one.lane == other.lane and was_first
+
+
+def next_move_s(start: Start, journey: Journey | None) -> float:
+    """When it is next to begin to cross by its journey: at the end of its corridor, or from where it stands."""
+    if journey is None:
+        return inf
+    if start.lane is not None:
+        return journey.legs[0].arrive_s
+    return journey.legs[1].enter_s if len(journey.legs) > 1 else inf
+
+
+def moves_over(network: Network, journey: Journey, post: int) -> Iterator[float]:
+    """When each move over the crossing of this post begins by the journey, where that takes time."""
+    if not network.crossing_s[post]:
+        return
+    for number, leg in enumerate(journey.legs):
+        if leg.post == post and leg.over_s:
+            yield leg.arrive_s
+        if number and leg.lane is not None and leg.lane.start == post:
+            yield leg.enter_s
 
 
 def retimed(
@@ -64,11 +110,7 @@ def retimed(
     Nothing is begun that was not begun: the first leg of each journey is where its robot's task starts. Raises
     OutOfOrderError for what no check would let through.
     """
-    course = _Course(network, tasks, journeys, travel_s or (lambda _, lane: lane.travel_s))
-    to_come = [(leg.enter_s, robot) for robot, journey in journeys.items() for leg in journey.legs[1:]]
-    for _, robot in sorted(to_come):
-        course.enter_next(robot)
-    return {robot: course.journey(robot) for robot in journeys}
+    return Course(network, tasks, journeys, travel_s or (lambda _, lane: lane.travel_s)).run()
 
 
 def caught_up(
@@ -106,94 +148,30 @@ def one_behind_the_other(tasks: Mapping[str, Task]) -> dict[str, Task]:
         way = lane.corridor, lane.backwards
         arrives_s = max(start.arrives_s, last_s.get(way, -inf) + lane.following_s)
         last_s[way] = arrives_s
-        expected[robot] = replace(task, start=replace(start, arrives_s=arrives_s, ready_s=arrives_s))
+        ready_s = arrives_s + start.ready_s - start.arrives_s
+        expected[robot] = replace(task, start=replace(start, arrives_s=arrives_s, ready_s=ready_s))
     return expected
 
 
-class _Course:
-    """The course so far, entry by entry."""
-
-    def __init__(
-        self, network: Network, tasks: Mapping[str, Task], journeys: Mapping[str, Journey], travel_s: Travel
-    ) -> None:
-        self._network, self._tasks, self._journeys, self._travel_s = network, tasks, journeys, travel_s
-        self._legs = {robot: [_first(tasks[robot], journey)] for robot, journey in journeys.items()}
-        self._goals = {robot: tasks[robot].goals[legs[0].goals :] for robot, legs in self._legs.items()}
-        self._entered_s = [-inf] * len(network.posts)
-        self._passages: dict[int, list[Leg]] = {}
-        self._bays_from_s = [[-inf] * bays for bays in network.bays]
-        for task in tasks.values():
-            self._take_first(task.start)
-        for task in tasks.values():
-            for start in task.start.on_the_way():
-                self._take_first(start)
-                if not start.at_home:
-                    self._bays_from_s[start.post].append(start.ready_s + network.clearance_s)
-
-    def enter_next(self, robot: str) -> None:
-        legs = self._legs[robot]
-        before, planned = legs[-1], self._journeys[robot].legs[len(legs)]
-        travel_s, enter_s = 0.0, before.ready_s
-        if planned.lane is not None:
-            travel_s = self._travel_s(robot, planned.lane)
-            enter_s = max(enter_s, self._corridor_from_s(planned.lane, travel_s))
-        if not planned.at_home:
-            enter_s = max(enter_s, self._entered_s[planned.post], self._take_bay(planned.post))
-            self._entered_s[planned.post] = enter_s
-        if not before.at_home:
-            self._bays_from_s[before.post].append(enter_s + self._network.clearance_s)
-        arrive_s = enter_s + travel_s
-        ready_s = ready_after(arrive_s, self._next_goals(robot, planned.goals))
-        leg = planned._replace(enter_s=enter_s, arrive_s=arrive_s, ready_s=ready_s)
-        legs.append(leg)
-        if planned.lane is not None:
-            self._passages.setdefault(planned.lane.corridor, []).append(leg)
-
-    def journey(self, robot: str) -> Journey:
-        legs, planned = tuple(self._legs[robot]), self._journeys[robot]
-        work = len(planned.work)
-        served = [leg.ready_s for leg in legs if leg.goals]
-        return Journey(legs[:work], legs[work:], served[-1] if served else legs[0].ready_s)
-
-    def _take_first(self, start: Start) -> None:
-        if not start.at_home and self._bays_from_s[start.post]:
-            self._bays_from_s[start.post].remove(min(self._bays_from_s[start.post]))
-        if start.lane is not None:
-            leg = Leg(start.lane, start.entered_s, start.arrives_s, start.post, start.at_home, 0, start.ready_s)
-            self._passages.setdefault(start.lane.corridor, []).append(leg)
-
-    def _take_bay(self, post: int) -> float:
-        """Return the time from which a bay is free: one that another robot has left before in the order of the
-        schedule."""
-        free = self._bays_from_s[post]
-        if not free:
-            raise OutOfOrderError(f"no bay at {self._network.posts[post]}")
-        from_s = min(free)
-        free.remove(from_s)
-        return from_s
-
-    def _corridor_from_s(self, lane: Lane, travel_s: float) -> float:
-        clear_s = self._network.clearance_s
-        from_s = -inf
-        for leg in self._passages.get(lane.corridor, ()):
-            if lane.following_s is not None and leg.lane is not None and leg.lane.backwards == lane.backwards:
-                from_s = max(from_s, max(leg.enter_s, leg.arrive_s - travel_s) + lane.following_s)
-            else:
-                from_s = max(from_s, leg.arrive_s + clear_s)
-        return from_s
-
-    def _next_goals(self, robot: str, count: int) -> tuple[Goal, ...]:
-        goals = self._goals[robot]
-        self._goals[robot] = goals[count:]
-        return goals[:count]
+def in_turn(tasks: Mapping[str, Task], journeys: Mapping[str, Journey]) -> dict[str, Task]:
+    """Those in corridors at the end of theirs when they come to the crossing there by these journeys, retimed: there
+    is one move at a time over it, so that whatever is planned can be planned round these."""
+    return {robot: _at_its_end(task, journeys[robot].legs[0]) for robot, task in tasks.items()}
 
 
-def _first(task: Task, journey: Journey) -> Leg:
-    """Where the robot is, with those goals that no later leg serves."""
+def standing_in_turn(network: Network, tasks: Mapping[str, Task]) -> dict[str, Task]:
+    """The same when there is no schedule: everybody comes in where it is let in, first come, first served."""
+    journeys = {robot: Journey((standing(task.start),), (), task.start.ready_s) for robot, task in tasks.items()}
+    still = {robot: Task(task.start, (), task.home) for robot, task in tasks.items()}
+    return in_turn(tasks, retimed(network, still, journeys))
+
+
+def _at_its_end(task: Task, leg: Leg) -> Task:
     start = task.start
-    goals = len(task.goals) - sum(leg.goals for leg in journey.legs[1:])
-    ready_s = ready_after(start.ready_s, task.goals[:goals])
-    return Leg(start.lane, start.entered_s, start.arrives_s, start.post, start.at_home, goals, ready_s)
+    if start.lane is None or start.crosses or start.arrives_s == leg.arrive_s:
+        return task
+    by_s = leg.arrive_s - start.arrives_s
+    return replace(task, start=replace(start, arrives_s=leg.arrive_s, ready_s=start.ready_s + by_s))
 
 
 def _goes_before(theirs: tuple[Leg, str], mine: tuple[Leg, str]) -> bool:
@@ -207,13 +185,13 @@ def _goes_before(theirs: tuple[Leg, str], mine: tuple[Leg, str]) -> bool:
     return same_post or same_corridor
 
 
-def _is_in_the_way(start: Start, mine: Leg, now_s: float) -> bool:
+def _is_in_the_way(network: Network, start: Start, mine: Leg, now_s: float) -> bool:
     if start.lane is None or mine.lane is None or start.lane.corridor != mine.lane.corridor:
         return False
     after_s = mine.lane.following_s
     if after_s is None or start.lane.backwards != mine.lane.backwards:
         return True
-    late_s = max(start.entered_s, start.arrives_s - mine.lane.travel_s)
+    late_s = max(start.entered_s, start.arrives_s - network.takes_s(mine.lane))
     return now_s < late_s + after_s
 
 

@@ -1,4 +1,4 @@
-"""Occupied resources: for how long each corridor and each bay is a robot's, and when they are free for another.
+"""Occupied resources: for how long corridors, crossings and bays are a robot's, and when they are free for another.
 
 All times are seconds of one clock.
 """
@@ -33,25 +33,40 @@ class Occupied:
         self._network = network
         self._passages: list[list[Passage]] = [[] for _ in network.corridors]
         self._bays: list[list[tuple[str, float, float]]] = [[] for _ in network.posts]
+        self._crossings: list[list[tuple[str, float, float]]] = [[] for _ in network.posts]
         self._corridors_of: defaultdict[str, set[int]] = defaultdict(set)
         self._posts_of: defaultdict[str, set[int]] = defaultdict(set)
         self._entries: dict[tuple[int, int], list[Span]] = {}
         self._free: dict[int, list[Span]] = {}
+        self._begins: dict[int, list[Span]] = {}
 
     def put(self, robot: str, legs: Sequence[Leg], until_s: float = inf) -> None:
         """Put in everything that a robot takes on these legs; the last stay ends at `until_s`."""
+        crossing_s = self._network.crossing_s
         for leg, leaves_s in stays(legs):
             if leg.lane is not None:
                 self._pass(robot, leg.lane, leg.enter_s, leg.arrive_s)
+                self.cross(robot, leg.lane.start, leg.enter_s, leg.enter_s + crossing_s[leg.lane.start])
+            if leg.over_s:
+                self.cross(robot, leg.post, leg.arrive_s, leg.stands_s)
             if not leg.at_home:
-                self._stand(robot, leg.post, leg.enter_s, min(leaves_s, until_s))
+                self._stand(robot, leg.post, leg.enter_s, min(leaves_s + crossing_s[leg.post], until_s))
 
     def hold(self, robot: str, start: Start, until_s: float) -> None:
-        """Put in what a robot has for certain: the corridor that it is in, and its bay, here until `until_s`."""
+        """Put in what a robot has for certain: the corridor that it is in, the crossing at its end when it is there,
+        and its bay, here until `until_s`."""
         if start.lane is not None:
             self._pass(robot, start.lane, start.entered_s, start.arrives_s)
+            self.cross(robot, start.post, start.arrives_s, start.arrives_s + self._network.crossing_s[start.post])
         if not start.at_home:
             self._stand(robot, start.post, start.entered_s, until_s)
+
+    def cross(self, robot: str, post: int, since_s: float, until_s: float) -> None:
+        """Put in one move over the crossing of a post, if that takes time."""
+        if self._network.crossing_s[post]:
+            self._crossings[post].append((robot, since_s, until_s))
+            self._posts_of[robot].add(post)
+            self._begins.pop(post, None)
 
     def free_last(self, robot: str, leg: Leg) -> None:
         """The stay that does not end, after this leg: the bay is given back, and all before it stays as it is."""
@@ -61,7 +76,7 @@ class Occupied:
 
     def go_on(self, robot: str, leg: Leg, further: Sequence[Leg]) -> None:
         """The stay after this leg, which was given back, and the legs behind it."""
-        self.put(robot, (leg._replace(lane=None), *further))
+        self.put(robot, (leg._replace(lane=None, over_s=0.0), *further))
 
     def remove(self, robot: str) -> None:
         """Remove everything that this robot has."""
@@ -70,7 +85,9 @@ class Occupied:
             self._forget(corridor)
         for post in self._posts_of.pop(robot, ()):
             self._bays[post] = [bay for bay in self._bays[post] if bay[0] != robot]
+            self._crossings[post] = [move for move in self._crossings[post] if move[0] != robot]
             self._free.pop(post, None)
+            self._begins.pop(post, None)
 
     def entries(self, lane: Lane) -> list[Span]:
         """When a lane may be entered, in order. Both ends belong to it."""
@@ -78,6 +95,16 @@ class Occupied:
         found = self._entries.get(key)
         if found is None:
             found = self._entries[key] = _gaps(self._shut(lane))
+        return found
+
+    def begins(self, post: int) -> list[Span]:
+        """When a move over the crossing of this post may begin, in order."""
+        found = self._begins.get(post)
+        if found is None:
+            over_s, clear_s = self._network.crossing_s[post], self._network.clearance_s
+            moves = self._crossings[post] if over_s else ()
+            shut = [(begin_s - over_s - clear_s + ROUNDING_S, end_s + clear_s) for _, begin_s, end_s in moves]
+            found = self._begins[post] = [] if post in self._network.shut else _gaps(sorted(shut))
         return found
 
     def free(self, post: int) -> list[Span]:
@@ -99,15 +126,15 @@ class Occupied:
         self._free.pop(post, None)
 
     def _shut(self, lane: Lane) -> list[Span]:
-        clear_s, travel_s, after_s = self._network.clearance_s, lane.travel_s, lane.following_s
+        clear_s, takes_s, after_s = self._network.clearance_s, self._network.takes_s(lane), lane.following_s
         shut = []
         for _, backwards, enter_s, leave_s in self._passages[lane.corridor]:
             if after_s is not None and backwards == lane.backwards:
                 # Behind one that is late no other may arrive too early either.
-                late_s = max(enter_s, leave_s - travel_s)
+                late_s = max(enter_s, leave_s - takes_s)
                 shut.append((enter_s - after_s + ROUNDING_S, late_s + after_s))
             else:
-                shut.append((enter_s - travel_s - clear_s + ROUNDING_S, leave_s + clear_s))
+                shut.append((enter_s - takes_s - clear_s + ROUNDING_S, leave_s + clear_s))
         shut.sort()
         return shut
 

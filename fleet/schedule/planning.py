@@ -150,16 +150,37 @@ def plan_what_can_be(network: Network, tasks: Tasks, rng: Random) -> tuple[Sched
 
 
 def _home_who_can(network: Network, tasks: Tasks, rng: Random) -> tuple[Schedule, dict[str, Task]]:
-    """Plan for all robots; if that fails, for all but one; if that fails, for none."""
-    ways_home = {robot: replace(task, goals=()) for robot, task in tasks.items()}
-    all_but_one = ({**ways_home, robot: replace(task, home=None)} for robot, task in ways_home.items())
-    for planned in (ways_home, *all_but_one):
-        found = first_plan(network, planned, rng)
-        if found is not None:
-            return found, planned
-    still = {robot: replace(task, home=None) for robot, task in ways_home.items()}
-    stays = {robot: Journey((standing(task.start),), (), task.start.ready_s) for robot, task in still.items()}
-    return Schedule(stays, 0.0, tuple(sorted(tasks))), still
+    """As many robots home as can be, without goals; the others stay where they stand. First each goes round those that
+    stay; then others also make way for it, if all that were to come home still do."""
+    planned = {robot: Task(task.start, (), None) for robot, task in tasks.items()}
+    stays = {robot: Journey((standing(task.start),), (), task.start.ready_s) for robot, task in tasks.items()}
+    schedule = Schedule(stays, 0.0, tuple(sorted(tasks)))
+
+    def goes_round(more: Tasks, robot: str) -> Schedule | None:
+        return insert(network, more, schedule.journeys, robot)
+
+    def has_others_make_way(more: Tasks, _robot: str) -> Schedule | None:
+        return first_plan(network, more, rng, tries=1)
+
+    away = _nearest_home_first(network, tasks)
+    for look in (goes_round, has_others_make_way):
+        went = True
+        while went:  # one that has gone is in the way no more
+            went = False
+            for robot in tuple(away):
+                more = {**planned, robot: replace(planned[robot], home=tasks[robot].home)}
+                found = look(more, robot)
+                if found is not None:
+                    schedule, planned, went = found, more, True
+                    away.remove(robot)
+    return schedule, planned
+
+
+def _nearest_home_first(network: Network, tasks: Tasks) -> list[str]:
+    ways_s = {
+        robot: network.shortest_s[task.start.post][task.home] for robot, task in tasks.items() if task.home is not None
+    }
+    return sorted(ways_s, key=lambda robot: (ways_s[robot], robot))
 
 
 def _one_after_the_other(network: Network, tasks: Tasks) -> Schedule | None:
@@ -205,6 +226,8 @@ def _taken_on_the_way(network: Network, tasks: Tasks) -> Occupied:
     for robot, task in tasks.items():
         for start in task.start.on_the_way():
             taken.hold(f"{robot} on its way", start, start.ready_s)
+        for post, until_s in task.start.crossings():
+            taken.cross(f"{robot} on its way", post, task.start.entered_s, until_s)
     return taken
 
 

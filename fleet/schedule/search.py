@@ -3,16 +3,21 @@
 A state is a post, the free span of one of its bays, and how many goals are done; of each state only the earliest time
 counts, since who is early can wait (Phillips and Likhachev, "SIPP: Safe Interval Path Planning for Dynamic
 Environments", ICRA 2011). Here a bay is taken when the corridor before it is entered.
+
+Where crossings take time a robot either comes in, and can wait, or goes straight on into the next corridor. Then it
+cannot wait, but all that it does since it last stood can be later by its `slack_s`.
 """
 
 import heapq
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import inf
 from typing import NamedTuple
 
-from fleet.schedule.journey import Goal, Leg, Start
+from fleet.schedule.journey import Goal, Leg, Start, standing
 from fleet.schedule.network import Lane, Network
 from fleet.schedule.occupied import Occupied, Span
+
+_ALWAYS: Span = (-inf, inf)
 
 
 class Found(NamedTuple):
@@ -23,13 +28,19 @@ class Found(NamedTuple):
 
 
 class _Node(NamedTuple):
-    """Reached by `leg`; `goals` are done, the last at `done_s`, and the stay ends at `until_s` at the latest."""
+    """Reached by `leg`; `goals` are done, the last at `done_s`, and the bay is free until `until_s` at the latest.
+
+    `passes`: it goes straight on at the end of the leg, which may come later by as much as `slack_s`. `later_s`: by so
+    much did everything before this leg come later, back to where the robot last stood, so that it could go on."""
 
     leg: Leg
     goals: int
     done_s: float
     until_s: float
     before: "_Node | None"
+    passes: bool = False
+    slack_s: float = inf
+    later_s: float = 0.0
 
 
 def find_work(
@@ -59,7 +70,8 @@ class _Search:
         *,
         may_end_in_a_bay: bool,
     ) -> None:
-        self._lanes, self._shortest_s = network.lanes, network.shortest_s
+        self._lanes, self._shortest_s, self._crossing_s = network.lanes, network.shortest_s, network.crossing_s
+        self._shut = network.shut
         self._taken = taken
         self._goals = goals
         self._home = home
@@ -68,18 +80,20 @@ class _Search:
         self._left_s = _left(network, goals)
         self._ahead: list[tuple[float, float, int, _Node]] = []
         self._pushed = 0
-        self._reached: dict[tuple[int, bool, int, float], float] = {}
+        self._reached: dict[tuple[int, bool, int, float, float], float] = {}
 
     def run(self, start: Start) -> Found | None:
         until_s = inf if start.at_home else self._stay_of(start)
-        self._reach(start.post, start.at_home, start.lane, start.entered_s, start.arrives_s, start.ready_s, until_s)
+        self._reach(standing(start), until_s, None)
+        if start.lane is not None and self._crossing_s[start.post] and not start.crosses and until_s > -inf:
+            self._pass(standing(start), until_s, None, 0.0)
         ahead, reached = self._ahead, self._reached
         while ahead:
             node = heapq.heappop(ahead)[3]
             leg = node.leg
-            if node.goals == len(self._goals) and self._may_end(leg, node.until_s):
+            if node.goals == len(self._goals) and not node.passes and self._may_end(leg, node.until_s):
                 return _found(node)
-            state = (leg.post, leg.at_home, node.goals, node.until_s)
+            state = _state(node)
             if reached.get(state, inf) > leg.ready_s:
                 reached[state] = leg.ready_s
                 self._go_on(node)
@@ -98,28 +112,42 @@ class _Search:
 
     def _go_on(self, node: _Node) -> None:
         leg = node.leg
-        if leg.post == self._home and not leg.at_home:  # from the bay to its place: no corridor is needed for that
-            self._reach(leg.post, True, None, leg.ready_s, leg.ready_s, leg.ready_s, inf, node)
+        if leg.post == self._home and not leg.at_home and not node.passes:
+            self._go_aside(node)
+        came_by = leg.lane.corridor if node.passes and leg.lane is not None else None
         for lane in self._lanes[leg.post]:
-            self._enter(node, lane)
+            if lane.corridor != came_by:
+                self._enter(node, lane)
+
+    def _go_aside(self, node: _Node) -> None:
+        """From the bay to its place at the same post: no corridor is needed for that."""
+        post, ready_s, over_s = node.leg.post, node.leg.ready_s, self._crossing_s[node.leg.post]
+        for opens_s, closes_s in self._taken.begins(post):
+            if closes_s >= ready_s:
+                enter_s = max(opens_s, ready_s)
+                if enter_s + over_s <= node.until_s:
+                    self._reach(Leg(None, enter_s, enter_s, post, True, 0, enter_s + over_s, over_s), inf, node)
+                return
 
     def _enter(self, node: _Node, lane: Lane) -> None:
         """Everything that is reached through this lane: home, and each span in which a bay is free."""
         windows = self._taken.entries(lane)
+        crosses = self._crossing_s[lane.start] or self._crossing_s[lane.end]
+        arrive = self._cross_and_arrive if crosses else self._arrive
         if lane.end == self._home:
-            self._arrive(node, lane, windows, (-inf, inf), at_home=True)
+            arrive(node, lane, windows, _ALWAYS, at_home=True)
         for span in self._taken.free(lane.end):
             if span[0] > node.until_s:
                 break
             if span[1] > node.leg.ready_s:
-                self._arrive(node, lane, windows, span, at_home=False)
+                arrive(node, lane, windows, span, at_home=False)
 
     def _arrive(self, node: _Node, lane: Lane, windows: Sequence[Span], span: Span, *, at_home: bool) -> None:
         """As early as the lane, this stay and the span allow, if that is earlier than what is known."""
         since_s, until_s = span
         ready_s, travel_s = node.leg.ready_s, lane.travel_s
         earliest_s = ready_s if ready_s > since_s else since_s
-        known_s = self._reached.get((lane.end, at_home, node.goals, until_s), inf)
+        known_s = self._reached.get((lane.end, at_home, node.goals, until_s, inf), inf)
         latest_s = min(node.until_s, until_s - travel_s, known_s - travel_s)
         for opens_s, closes_s in windows:
             if closes_s < earliest_s:
@@ -127,34 +155,69 @@ class _Search:
             enter_s = opens_s if opens_s > earliest_s else earliest_s
             if enter_s <= latest_s:
                 arrive_s = enter_s + travel_s
-                self._reach(lane.end, at_home, lane, enter_s, arrive_s, arrive_s, until_s, node)
+                self._reach(Leg(lane, enter_s, arrive_s, lane.end, at_home, 0, arrive_s), until_s, node)
             return
 
-    def _reach(
-        self,
-        post: int,
-        at_home: bool,
-        lane: Lane | None,
-        enter_s: float,
-        arrive_s: float,
-        ready_s: float,
-        until_s: float,
-        before: _Node | None = None,
-    ) -> None:
+    def _cross_and_arrive(self, node: _Node, lane: Lane, windows: Sequence[Span], span: Span, *, at_home: bool) -> None:
+        """The same over the crossings before the lane and behind it; there it comes in or goes straight on."""
+        since_s, until_s = span
+        ready_s, out_s, in_s = node.leg.ready_s, self._crossing_s[lane.start], self._crossing_s[lane.end]
+        takes_s = out_s + lane.travel_s
+        latest_s = min(node.until_s - out_s, until_s - takes_s - in_s, ready_s + node.slack_s)
+        fits = self._first_fit(lane, windows, max(ready_s, since_s), latest_s)
+        if fits is None:
+            return
+        enter_s, closes_s = fits
+        arrive_s, later_s = enter_s + takes_s, enter_s - ready_s if node.passes else 0.0
+        leg = Leg(lane, enter_s, arrive_s, lane.end, at_home, 0, arrive_s + in_s, in_s)
+        self._reach(leg, until_s, node, later_s)
+        if in_s:
+            self._pass(leg, until_s, node, min(closes_s, latest_s) - enter_s, later_s)
+
+    def _first_fit(
+        self, lane: Lane, windows: Sequence[Span], earliest_s: float, latest_s: float
+    ) -> tuple[float, float] | None:
+        """The first moment at which the lane may be entered over its first crossing and the second is free at its end,
+        and until when that stays so."""
+        takes_s = self._crossing_s[lane.start] + lane.travel_s
+        wanted = (windows, 0.0), (self._taken.begins(lane.start), 0.0), (self._taken.begins(lane.end), takes_s)
+        at_s, tried_s = earliest_s, -inf
+        while tried_s < at_s <= latest_s:
+            tried_s, until_s = at_s, inf
+            for spans, after_s in wanted:
+                span = next((one for one in spans if one[1] >= at_s + after_s), None)
+                if span is None:
+                    return None
+                at_s, until_s = max(at_s, span[0] - after_s), min(until_s, span[1] - after_s)
+        return (at_s, until_s) if at_s <= latest_s else None
+
+    def _pass(self, leg: Leg, until_s: float, before: _Node | None, slack_s: float, later_s: float = 0.0) -> None:
+        """It goes straight on at the end of this leg."""
+        served, done_s = (0, leg.arrive_s) if before is None else (before.goals, before.done_s)
+        if before is not None and before.passes:
+            slack_s = min(slack_s, before.slack_s - later_s)
+        passing = leg._replace(ready_s=leg.arrive_s, over_s=0.0)
+        self._push(_Node(passing, served, done_s, until_s, before, True, slack_s, later_s))
+
+    def _reach(self, leg: Leg, until_s: float, before: _Node | None, later_s: float = 0.0) -> None:
         """Serve what can be served, or less: a robot that serves all of it may then be in another's way."""
+        ready_s, post = leg.ready_s, leg.post
         served, done_s = (0, ready_s) if before is None else (before.goals, before.done_s)
         goals, done = self._goals, served
         while ready_s <= until_s:
-            key = self._key(post, done, ready_s, done_s)
-            if key[0] < self._within_s and key[1] < inf:
-                self._pushed += 1
-                leg = Leg(lane, enter_s, arrive_s, post, at_home, done - served, ready_s)
-                heapq.heappush(self._ahead, (*key, self._pushed, _Node(leg, done, done_s, until_s, before)))
+            reached = leg._replace(goals=done - served, ready_s=ready_s) if done > served else leg
+            self._push(_Node(reached, done, done_s, until_s, before, later_s=later_s))
             if done == len(goals) or goals[done].post != post:
                 break
             goal = goals[done]
             ready_s = (ready_s if ready_s > goal.not_before_s else goal.not_before_s) + goal.handling_s
             done, done_s = done + 1, ready_s
+
+    def _push(self, node: _Node) -> None:
+        key = self._key(node.leg.post, node.goals, node.leg.ready_s, node.done_s)
+        if key[0] < self._within_s and key[1] < inf and self._reached.get(_state(node), inf) > node.leg.ready_s:
+            self._pushed += 1
+            heapq.heappush(self._ahead, (*key, self._pushed, node))
 
     def _key(self, post: int, done: int, ready_s: float, done_s: float) -> tuple[float, float]:
         """No end that is reached from here is better than this: when the last goal is done, then when it is home."""
@@ -164,6 +227,12 @@ class _Search:
         if self._may_end_in_a_bay or self._home is None:
             return done_s, ready_s
         return done_s, ready_s + way_s[self._home]
+
+
+def _state(node: _Node) -> tuple[int, bool, int, float, float]:
+    """One that passes can be earlier and yet worse, if it can be later by less."""
+    latest_s = node.leg.ready_s + node.slack_s if node.passes else inf
+    return node.leg.post, node.leg.at_home, node.goals, node.until_s, latest_s
 
 
 def _left(network: Network, goals: Sequence[Goal]) -> list[float]:
@@ -178,9 +247,19 @@ def _left(network: Network, goals: Sequence[Goal]) -> list[float]:
 
 
 def _found(node: _Node) -> Found:
-    legs = []
-    at: _Node | None = node
+    return Found(tuple(reversed(list(_legs_back(node)))), node.done_s)
+
+
+def _legs_back(last: _Node) -> Iterator[Leg]:
+    at: _Node | None = last
+    later_s = 0.0
     while at is not None:
-        legs.append(at.leg)
+        if not at.passes:
+            later_s = 0.0
+        yield at.leg if not later_s else _later(at.leg, later_s)
+        later_s += at.later_s
         at = at.before
-    return Found(tuple(reversed(legs)), node.done_s)
+
+
+def _later(leg: Leg, by_s: float) -> Leg:
+    return leg._replace(enter_s=leg.enter_s + by_s, arrive_s=leg.arrive_s + by_s, ready_s=leg.ready_s + by_s)

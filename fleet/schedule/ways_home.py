@@ -8,7 +8,6 @@ from collections import defaultdict
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
-from random import Random
 from typing import Final, NamedTuple
 
 from fleet.schedule.journey import Journey, Leg, Start, Task, stays
@@ -30,6 +29,7 @@ class WaysHome:
     taken: Occupied
     work: Journeys
     pause: Callable[[], None]
+    _found_none: str | None = None
 
     def plan(self, kept: Journeys) -> dict[str, Journey] | None:
         """`kept`: what robots whose work is as it was did so far, ways home included. None if a robot finds no way."""
@@ -48,7 +48,7 @@ class WaysHome:
         done, home = self.work[robot], self.tasks[robot].home
         last = done.work[-1]
         self.taken.free_last(robot, last)
-        start = Start(last.post, last.at_home, last.ready_s, last.enter_s, last.lane, last.arrive_s)
+        start = Start(last.post, last.at_home, last.ready_s, last.enter_s)
         found = None if home is None else find_home(self.network, self.taken, start, home)
         way_home = () if found is None else found.legs[1:]
         self.taken.go_on(robot, last, way_home)
@@ -66,13 +66,15 @@ class WaysHome:
         return {**self.work, **as_they_were, **found}
 
     def _anew(self, away: list[str]) -> dict[str, Journey] | None:
-        """Plan anew: the robot that is done first goes first; if one finds no way home then, others go before."""
-        rng = Random(len(away))
+        """Plan anew: the robot that is done first goes first; one that finds no way home then goes when all others have
+        gone, or before them if it came last."""
         for _ in range(TRIES):
             found = self._one_by_one(away)
             if found is not None:
                 return {**self.work, **found}
-            rng.shuffle(away)
+            others = [robot for robot in away if robot != self._found_none]
+            left = [robot for robot in away if robot == self._found_none]
+            away = [*left, *others] if away[-1:] == left else [*others, *left]
         return None
 
     def _one_by_one(self, away: Sequence[str]) -> dict[str, Journey] | None:
@@ -82,6 +84,7 @@ class WaysHome:
             journey = self.way_home(robot)
             if journey is None:
                 self._stand(away)
+                self._found_none = robot
                 return None
             found[robot] = journey
         return found
@@ -111,25 +114,38 @@ def undisturbed(network: Network, work: Journeys, kept: Journeys) -> Journeys:
     at one place at about one time may be."""
     passages: defaultdict[int, list[_Visit]] = defaultdict(list)
     standing: defaultdict[int, list[_Visit]] = defaultdict(list)
-    for visit in _visits(work, kept):
+    crossing: defaultdict[int, list[_Visit]] = defaultdict(list)
+    for visit in _visits(network, work, kept):
         if visit.leg.lane is not None:
             passages[visit.leg.lane.corridor].append(visit)
         if not visit.leg.at_home:
             standing[visit.leg.post].append(visit)
+        for post, at_s in _crossed(network, visit.leg):
+            crossing[post].append(visit._replace(leg=visit.leg._replace(enter_s=at_s, arrive_s=at_s)))
     disturbed: set[str] = set()
     for through in passages.values():
         disturbed.update(_met(through, kept, network.clearance_s))
+    for post, over in crossing.items():
+        disturbed.update(_met(over, kept, network.crossing_s[post] + network.clearance_s))
     for post, there in standing.items():
         disturbed.update(_crowded_out(there, kept, network.bays[post]))
     return {robot: journey for robot, journey in kept.items() if robot not in disturbed}
 
 
-def _visits(work: Journeys, kept: Journeys) -> Iterator[_Visit]:
+def _crossed(network: Network, leg: Leg) -> Iterator[tuple[int, float]]:
+    """Each post whose crossing the leg leads over, with the time at which that begins."""
+    if leg.lane is not None and network.crossing_s[leg.lane.start]:
+        yield leg.lane.start, leg.enter_s
+    if leg.over_s:
+        yield leg.post, leg.arrive_s
+
+
+def _visits(network: Network, work: Journeys, kept: Journeys) -> Iterator[_Visit]:
     for robot, planned in work.items():
         journey = kept.get(robot, planned)
         for at, (leg, until_s) in enumerate(stays(journey.legs)):
             # Who has no way home yet will be gone in time, or all ways home are planned again.
-            ends_s = leg.ready_s if until_s == inf else until_s
+            ends_s = leg.ready_s if until_s == inf else until_s + network.crossing_s[leg.post]
             yield _Visit(robot, leg, ends_s, at >= len(journey.work))
 
 

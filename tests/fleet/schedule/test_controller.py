@@ -8,7 +8,7 @@ from random import Random
 
 import pytest
 
-from fleet.schedule.controller import Denied, Granted, TrafficController, Waits
+from fleet.schedule.controller import ComeIn, Denied, Granted, TrafficController, Waits
 from fleet.schedule.journey import Goal
 from fleet.schedule.network import Lane, Network
 from fleet.schedule.planning import Schedule
@@ -206,12 +206,20 @@ class Campus:
             self.now_s, _, robot = heapq.heappop(self._ahead)
             self._arrive(robot)
             served += self._serve(robot)
+            self._make_room()
             for name, answer in self.controller.grants(self.now_s):
                 if isinstance(answer, Granted):
                     self._enter(name, answer.lane)
                 else:
                     self.later(name, 1.0)
         return served
+
+    def _make_room(self) -> None:
+        """Who is to go from a bay to its home place does so, without a crossing at once."""
+        for robot, post in self.at.items():
+            is_there = robot not in self.in_corridors
+            if is_there and isinstance(self.controller.next_move(robot, self.now_s), ComeIn):
+                self.controller.comes_in(robot, self.network.posts[post], self.now_s)
 
     def _arrive(self, robot: str) -> None:
         lane = self.in_corridors.pop(robot, None)

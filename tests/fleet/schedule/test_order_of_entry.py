@@ -37,14 +37,18 @@ def test_a_robot_that_is_ready_early_waits_for_the_one_the_schedule_lets_go_firs
 
 
 @settings(max_examples=60)
-@given(st.randoms(use_true_random=False), st.integers(1, 6), st.booleans())
-def test_when_no_robot_is_late_nothing_comes_later_than_planned(rng: Random, robots: int, following: bool) -> None:
-    network = random_network(rng, following=following)
+@given(st.randoms(use_true_random=False), st.integers(1, 6), st.booleans(), st.booleans())
+def test_when_no_robot_is_late_nothing_comes_later_than_planned(
+    rng: Random, robots: int, following: bool, crossing: bool
+) -> None:
+    network = random_network(rng, following=following, crossing=crossing)
     tasks = random_tasks(rng, network, robots)
     found = planned(rng, network, tasks)
     # A robot that turns round keeps the clearance to itself.
     slack_s = network.clearance_s * sum(len(journey.legs) for journey in found.journeys.values())
-    for robot, journey in retimed(network, tasks, found.journeys).items():
+    again_from_now = retimed(network, tasks, found.journeys)
+    assert problems(network, tasks, again_from_now) == []
+    for robot, journey in again_from_now.items():
         for again, leg in zip(journey.legs, found.journeys[robot].legs, strict=True):
             assert again.enter_s <= leg.enter_s + slack_s
             assert again.ready_s <= leg.ready_s + slack_s

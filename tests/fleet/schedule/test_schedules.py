@@ -16,8 +16,8 @@ from fleet.schedule.validation import problems
 from tests.fleet.schedule.carried_out import World
 
 
-def random_network(rng: Random, *, following: bool = False) -> Network:
-    """A connected map of 2 to 9 posts with 1 to 3 bays, and ways of 20 to 90 s."""
+def random_network(rng: Random, *, following: bool = False, crossing: bool = False) -> Network:
+    """A connected map of 2 to 9 posts with 1 to 3 bays, ways of 20 to 90 s, and crossings of 5 to 20 s."""
     posts = rng.randint(2, 9)
     edges = {(rng.randrange(post), post) for post in range(1, posts)}
     for _ in range(rng.randint(0, posts // 2)):
@@ -30,7 +30,8 @@ def random_network(rng: Random, *, following: bool = False) -> Network:
         lanes[b].append(Lane(number, 1, b, a, travel_s, after_s))
     names = tuple(f"p{post}" for post in range(posts))
     corridors = tuple(f"p{a}-p{b}" for a, b in sorted(edges))
-    return Network(names, tuple(rng.randint(1, 3) for _ in names), corridors, tuple(tuple(out) for out in lanes))
+    network = Network(names, tuple(rng.randint(1, 3) for _ in names), corridors, tuple(tuple(out) for out in lanes))
+    return replace(network, crossing_s=tuple(rng.uniform(5.0, 20.0) for _ in names)) if crossing else network
 
 
 def random_tasks(rng: Random, network: Network, robots: int) -> dict[str, Task]:
@@ -50,11 +51,11 @@ def planned(rng: Random, network: Network, tasks: dict[str, Task]) -> Schedule:
     return found
 
 
-@given(st.randoms(use_true_random=False), st.integers(1, 6), st.booleans())
+@given(st.randoms(use_true_random=False), st.integers(1, 6), st.booleans(), st.booleans())
 def test_every_schedule_passes_a_check_that_knows_nothing_of_the_search(
-    rng: Random, robots: int, following: bool
+    rng: Random, robots: int, following: bool, crossing: bool
 ) -> None:
-    network = random_network(rng, following=following)
+    network = random_network(rng, following=following, crossing=crossing)
     tasks = random_tasks(rng, network, robots)
     first = planned(rng, network, tasks)
     assert problems(network, tasks, first.journeys) == []

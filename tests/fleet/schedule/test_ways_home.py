@@ -55,9 +55,11 @@ def test_a_way_home_past_a_robot_is_no_matter_where_there_is_a_bay_for_both() ->
 
 
 @settings(max_examples=100)
-@given(st.randoms(use_true_random=False), st.integers(2, 6), st.booleans())
-def test_new_work_beside_what_is_kept_makes_a_whole_schedule(rng: Random, robots: int, following: bool) -> None:
-    network = random_network(rng, following=following)
+@given(st.randoms(use_true_random=False), st.integers(2, 6), st.booleans(), st.booleans())
+def test_new_work_beside_what_is_kept_makes_a_whole_schedule(
+    rng: Random, robots: int, following: bool, crossing: bool
+) -> None:
+    network = random_network(rng, following=following, crossing=crossing)
     tasks = random_tasks(rng, network, robots)
     kept = planned(rng, network, tasks).journeys
     some = rng.sample(sorted(tasks), rng.randint(1, robots - 1))

@@ -1,0 +1,158 @@
+"""The schedule of the robots that are there, kept whole through every change: a new order, a closure, a failure."""
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
+from random import Random
+from typing import Final
+
+from fleet.schedule.course import OutOfOrderError
+from fleet.schedule.execution import caught_up, in_turn, one_behind_the_other, retimed, standing_in_turn, waits_for
+from fleet.schedule.journey import Goal, Journey, Task, standing
+from fleet.schedule.network import Network
+from fleet.schedule.participant import Participant, open_network
+from fleet.schedule.planning import Schedule, first_plan, improve, insert, plan, plan_what_can_be
+from fleet.schedule.turning import turn_round
+from fleet.schedule.validation import problems
+
+ROUNDS: Final = 10
+"""So often something better is looked for after each change, unless the caller does that himself."""
+
+
+class UnsoundSchedule(RuntimeError):
+    """The search has made what the independent check refuses: a mistake of ours. No robot is let in by it; a caller
+    that keeps the controller builds it anew."""
+
+
+class LiveSchedule:
+    """`network`: as it is open now: without closed corridors, and without what robots that stand still are in.
+    `planned`: as it was made or retimed last; its order is what counts."""
+
+    def __init__(self, network: Network, rng: Random) -> None:
+        self.whole = self.network = network
+        self.closed: frozenset[str] = frozenset()
+        self.robots: dict[str, Participant] = {}
+        self.planned: dict[str, Journey] = {}
+        self._rng = rng
+
+    def tasks(self, now_s: float) -> dict[str, Task]:
+        """Every robot that can be planned for, as it is now: of its goals those that can be reached."""
+        tasks = self._as_known(now_s)
+        return in_turn(tasks, self._retimed(tasks)) if self.network.has_crossings else tasks
+
+    def journeys(self, now_s: float) -> dict[str, Journey]:
+        """The schedule from now on."""
+        return self._retimed(self._as_known(now_s))
+
+    def waits_for(self, robot: str, now_s: float, journey: Journey | None = None) -> tuple[str, ...]:
+        """Return those that go on before this one may enter the next corridor of its journey."""
+        starts = {name: other.start for name, other in self.robots.items()}
+        journeys = self.planned if journey is None else {**self.planned, robot: journey}
+        # The frozen are among them, so that their bays must not be missing a second time.
+        return tuple(dict.fromkeys(waits_for(self.whole, starts, journeys, robot, now_s)))
+
+    def give(self, robot: str, goals: Sequence[Goal], now_s: float, rounds: int) -> bool:
+        """These are its goals from now on, if there is a schedule with them; else nothing changes."""
+        its, before = self.robots[robot], replace(self.robots[robot])
+        its.wants(goals, now_s)
+        if its.stands_still:
+            return True
+        its.goals_wait = False
+        tasks, kept = self.tasks(now_s), self.journeys(now_s)
+        # The room that the schedule leaves it to come home stays: others might shut it in.
+        del kept[robot]
+        found = plan(self.network, tasks, [robot], kept) or insert(self.network, tasks, kept, robot)
+        found = found or first_plan(self.network, tasks, self._rng)
+        if found is None or not self._takes(tasks, self._better(tasks, found, rounds)):
+            self.robots[robot] = before
+            return False
+        return True
+
+    def adopt(self, goals: Mapping[str, Sequence[Goal]], schedule: Schedule, now_s: float) -> bool:
+        """The same for several robots with a schedule that was worked out elsewhere, if it can still be carried out."""
+        before = {name: replace(robot) for name, robot in self.robots.items()}
+        for name, theirs in goals.items():
+            self.robots[name].wants(self.robots[name].as_told(theirs), now_s)
+        tasks = self._as_known(now_s)
+        journeys = caught_up(self.network, tasks, schedule.journeys)
+        if journeys is not None and self._takes(tasks, replace(schedule, journeys=journeys)):
+            return True
+        self.robots = before
+        return False
+
+    def plan_all(self, now_s: float) -> None:
+        """Plan all anew, as far as it can be: closures or robots have changed."""
+        self._open(now_s)
+        for robot in self.robots.values():
+            robot.goals_wait = robot.stays = False
+        wanted = self._as_known(now_s)
+        wanted = standing_in_turn(self.network, wanted) if self.network.has_crossings else wanted
+        found, planned = plan_what_can_be(self.network, wanted, self._rng)
+        for name, task in planned.items():
+            self.robots[name].goals_wait = len(task.goals) < len(wanted[name].goals)
+            self.robots[name].stays = task.home != wanted[name].home
+        if not (self._takes(planned, self._better(planned, found, ROUNDS)) or self._takes(planned, found)):
+            raise UnsoundSchedule("; ".join(problems(self.network, planned, found.journeys)))
+
+    def plan_round_what_shut(self, now_s: float) -> None:
+        """Something has been shut: plan those whose way it was anew, round all the others; if that fails, all."""
+        if not any(robot.goals_wait or robot.stays or robot.is_shut_in for robot in self.robots.values()):
+            wanted = {name: _wants(task) for name, task in self._as_known(now_s).items()}
+            self._open(now_s)
+            tasks = self._as_known(now_s)
+            concerned = [
+                name for name, task in tasks.items() if wanted[name] != _wants(task) or not self._is_open(name)
+            ]
+            if self._plan_some(tasks, concerned):
+                return
+        self.plan_all(now_s)
+
+    def try_again(self, now_s: float) -> None:
+        """A robot has moved: one that could not be planned for may have a way now."""
+        if any(robot.stays or robot.is_shut_in for robot in self.robots.values()):
+            self.plan_all(now_s)
+        for name, robot in self.robots.items():
+            if robot.goals_wait and not robot.stands_still:
+                self.give(name, robot.goals, now_s, rounds=0)
+
+    def _as_known(self, now_s: float) -> dict[str, Task]:
+        robots = self.robots.items()
+        tasks = {name: robot.task(self.network, now_s) for name, robot in robots if not robot.stands_still}
+        return one_behind_the_other(tasks)
+
+    def _retimed(self, tasks: Mapping[str, Task]) -> dict[str, Journey]:
+        return retimed(self.network, tasks, self.planned)
+
+    def _open(self, now_s: float) -> None:
+        turn_round(self.whole, self.robots, now_s)
+        self.network = open_network(self.whole, self.closed, self.robots.values())
+
+    def _is_open(self, name: str) -> bool:
+        """Tell if the robot is where its journey leads, and every corridor of that is open."""
+        start, legs = self.robots[name].start, self.planned[name].legs
+        lanes = [leg.lane for leg in legs[1:] if leg.lane is not None]
+        return legs[0].post == start.post and all(lane in self.network.lanes[lane.start] for lane in lanes)
+
+    def _plan_some(self, tasks: Mapping[str, Task], concerned: Collection[str]) -> bool:
+        stays = {name: Journey((standing(tasks[name].start),), (), tasks[name].start.ready_s) for name in concerned}
+        still = {name: replace(task, goals=()) if name in stays else task for name, task in tasks.items()}
+        try:
+            kept = retimed(self.network, still, {name: stays.get(name) or self.planned[name] for name in tasks})
+        except OutOfOrderError:
+            return False
+        in_time = in_turn(tasks, kept)
+        found = plan(self.network, in_time, sorted(concerned), kept)
+        return found is not None and self._takes(in_time, found)
+
+    def _better(self, tasks: Mapping[str, Task], found: Schedule, rounds: int) -> Schedule:
+        left = iter(range(rounds))
+        return improve(self.network, tasks, found, self._rng, lambda: next(left, None) is not None)
+
+    def _takes(self, tasks: Mapping[str, Task], schedule: Schedule) -> bool:
+        if problems(self.network, tasks, schedule.journeys):
+            return False
+        self.planned = dict(schedule.journeys)
+        return True
+
+
+def _wants(task: Task) -> tuple[Iterable[tuple[str, int]], int | None]:
+    return [(goal.key, goal.post) for goal in task.goals], task.home
