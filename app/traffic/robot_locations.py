@@ -9,7 +9,7 @@ from typing import Final
 from sqlmodel import col, func, select, tuple_
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.models import ClaimRow, GrantRow, MissionRow, MissionState, RobotRow, StopRow
+from app.models import ClaimRow, GrantRow, MissionRow, MissionState, OccupancyRow, RobotRow, StopRow
 from app.robots.corridors.closures import closed_names
 from maps import CampusMap, corridor_name
 from protocol.parts import Activity
@@ -27,6 +27,8 @@ class ReservationRequest:
     first: tuple[tuple[str, str], ...]
     goal: str
     then: tuple[tuple[str, str], ...] = ()
+    legs: tuple[tuple[str, str], ...] = ()
+    """All of them, as the robot named them: spurs and corridors of the track."""
 
     @property
     def is_for_later(self) -> bool:
@@ -48,9 +50,18 @@ class Hold:
 
 
 @dataclass(frozen=True)
+class Occupied:
+    """A bay, a crossing or a corridor that a robot says to be wholly in: `place`, see `OccupancyRow`."""
+
+    kind: str
+    place: str
+    towards: str | None = None
+
+
+@dataclass(frozen=True)
 class RobotLocation:
-    """One robot. `goals`: key and post of all that it has before it, in order. `stopped`: a person or something
-    keeps it where it is, and it has said so."""
+    """One robot. `goals`: key and post of all that it has before it, in order. `stopped`: a person or something keeps
+    it where it is, and it has said so. `occupies` and `home_bay`: on maps with bays."""
 
     robot: str
     post: str
@@ -63,6 +74,8 @@ class RobotLocation:
     request: ReservationRequest | None
     stopped: bool
     heard_at: datetime | None
+    occupies: Occupied | None = None
+    home_bay: str | None = None
 
     @property
     def way(self) -> tuple[Hold, ...]:
@@ -82,17 +95,24 @@ class TrafficSnapshot:
 
 
 async def read_traffic(session: AsyncSession, campus: CampusMap) -> TrafficSnapshot:
-    """Four questions, whatever the number of robots."""
+    """Five questions, whatever the number of robots. On a map with bays no place is known but by the robot's report."""
+    has_bays = campus.track is not campus
     placed = select(RobotRow).where(col(RobotRow.post).is_not(None), col(RobotRow.taken_out_at).is_(None))
     rows = (await session.exec(placed.order_by(RobotRow.name))).all()
-    holds, wishes, goals = await _holds(session), await _requests(session), await _goals(session)
+    holds, wishes, goals = await _holds(session), await _requests(session, campus), await _goals(session)
+    occupied = await _occupied(session)
     closed = await closed_names(session)
     robots = {
         row.name: _robot_location(
-            campus, row, tuple(holds.get(row.name, ())), wishes.get(row.name), tuple(goals.get(row.name, ()))
+            campus,
+            row,
+            tuple(holds.get(row.name, ())),
+            wishes.get(row.name),
+            tuple(goals.get(row.name, ())),
+            occupied.get(row.name),
         )
         for row in rows
-        if row.post in campus.posts
+        if row.post in campus.posts and (not has_bays or row.name in occupied)
     }
     return TrafficSnapshot(robots, closed)
 
@@ -124,6 +144,7 @@ def _robot_location(
     holds: tuple[Hold, ...],
     request: ReservationRequest | None,
     goals: tuple[tuple[str, str], ...],
+    occupies: Occupied | None,
 ) -> RobotLocation:
     post = row.post or ""
     home = row.home if row.home in campus.posts else next((dock.name for dock in campus.docks()), None)
@@ -134,13 +155,15 @@ def _robot_location(
         post=post,
         seen_at=row.seen_at,
         home=home,
-        at_home=docked and post == home,
+        at_home=docked and post == home if occupies is None else occupies.place == row.home_bay,
         online=row.online,
         holds=holds,
         goals=_with_its_own(request, goals),
         request=request,
         stopped=row.activity == Activity.STOPPED,
         heard_at=row.heard_at,
+        occupies=occupies,
+        home_bay=row.home_bay,
     )
 
 
@@ -165,14 +188,19 @@ async def _holds(session: AsyncSession) -> dict[str, list[Hold]]:
     return held
 
 
-async def _requests(session: AsyncSession) -> dict[str, ReservationRequest]:
+async def _occupied(session: AsyncSession) -> dict[str, Occupied]:
+    rows = (await session.exec(select(OccupancyRow))).all()
+    return {row.robot: Occupied(row.kind, row.place, row.towards) for row in rows}
+
+
+async def _requests(session: AsyncSession, campus: CampusMap) -> dict[str, ReservationRequest]:
     rows = (
         await session.exec(select(ClaimRow).where(col(ClaimRow.granted).is_(None)).order_by(col(ClaimRow.at)))
     ).all()
-    return {row.robot: _request(row) for row in rows}
+    return {row.robot: _request(row, campus) for row in rows}
 
 
-def _request(row: ClaimRow) -> ReservationRequest:
+def _request(row: ClaimRow, campus: CampusMap) -> ReservationRequest:
     legs = [(str(leg["from_post"]), str(leg["to_post"])) for leg in row.legs]
     here = legs[0][0]
     first = legs[:1]
@@ -180,9 +208,10 @@ def _request(row: ClaimRow) -> ReservationRequest:
         if leg[0] != here or leg in first:
             break
         first.append(leg)
-    goal = row.goal or legs[-1][1]
+    goal = campus.address_of(row.goal or legs[-1][1])
     to_goal = next((number for number, leg in enumerate(legs, start=1) if leg[1] == goal), len(legs))
-    return ReservationRequest(row.claim_id, tuple(first), goal, tuple(legs[1:to_goal]) if len(first) == 1 else ())
+    then = tuple(legs[1:to_goal]) if len(first) == 1 else ()
+    return ReservationRequest(row.claim_id, tuple(first), goal, then, tuple(legs))
 
 
 _LAST_LEFT: Final = (

@@ -7,6 +7,7 @@ anything went wrong.
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import Final
 
 import structlog
 
@@ -17,9 +18,12 @@ from fleet.schedule.answers import ComeIn, Denied, Granted, Waits
 from fleet.schedule.controller import TrafficController
 from fleet.schedule.journey import Goal
 from fleet.schedule.network import Lane, Network, network_of
-from maps import CampusMap, CampusMapError, Corridor, corridor_name, shortest_route
+from maps import CampusMap, CampusMapError, Corridor, Post, corridor_name, shortest_route
 
 log = structlog.get_logger(__name__)
+ASSUMED_CROSSING_S: Final = 15.0
+"""From a bay or a corridor over the crossing until the robot is wholly in what follows: what robots took in the
+simulated world with spurs of a metre, and a little more."""
 Leg = tuple[str, str]
 """From which post to which."""
 
@@ -65,11 +69,13 @@ class TrafficSchedule:
     vanished: frozenset[str] = frozenset()
     estimates: Estimates | None = None
     controller: TrafficController = field(init=False)
+    track: CampusMap = field(init=False)
     _known: dict[str, RobotLocation] = field(default_factory=dict)
     _frozen: set[str] = field(default_factory=set)
     _closed: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
+        self.track = self.campus.track
         self.controller = TrafficController(network_for(self.campus, self.settings, self.estimates))
 
     @property
@@ -277,4 +283,7 @@ def network_for(campus: CampusMap, settings: Settings, estimates: Estimates | No
         learned_s = estimates.usual_s(start, corridor.other(start)) if estimates is not None else None
         return corridor.length_m / settings.assumed_speed_m_s if learned_s is None else learned_s
 
-    return network_of(campus, travel_s, lambda corridor: corridor.following_s)
+    def crossing_s(post: Post) -> float:
+        return ASSUMED_CROSSING_S if post.spurs else 0.0
+
+    return network_of(campus, travel_s, lambda corridor: corridor.following_s, crossing_s=crossing_s)

@@ -16,6 +16,7 @@ from app.models import ClaimRow, GrantRow, RobotRow
 from app.robots.alarms import VANISHED, clear_alarms, raise_alarm
 from app.robots.corridors.occupied import tell_of_traffic
 from app.robots.service import Fleet, known_robot
+from app.traffic.bay_schedule import BayTrafficSchedule
 from app.traffic.robot_locations import RobotLocation, TrafficSnapshot, left_at, read_traffic, where_they_left
 from app.traffic.schedule import Elsewhere, HasToWait, MayEnter, TrafficSchedule, Verdict
 from maps import corridor_name
@@ -101,7 +102,9 @@ class TrafficService:
             call()
 
     def _new_schedule(self) -> TrafficSchedule:
-        return TrafficSchedule(self._fleet.campus, self._fleet.settings, estimates=self._fleet.orders.ledger.estimates)
+        campus = self._fleet.campus
+        kind = TrafficSchedule if campus.track is campus else BayTrafficSchedule
+        return kind(campus, self._fleet.settings, estimates=self._fleet.orders.ledger.estimates)
 
     def _vanished(self, snapshot: TrafficSnapshot, now: datetime) -> frozenset[str]:
         """Silent for long, and not at home: without network robots are for minutes, with a flat battery for good."""

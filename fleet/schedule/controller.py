@@ -29,6 +29,7 @@ from fleet.schedule.journey import Goal, Journey, Task, goes_aside, without_asid
 from fleet.schedule.live import ROUNDS, LiveSchedule, UnsoundSchedule
 from fleet.schedule.network import Lane, Network
 from fleet.schedule.participant import Participant, is_full
+from fleet.schedule.placing import Place, is_same, start_at
 from fleet.schedule.planning import Schedule
 from fleet.schedule.under_way import aside, crossed, further, is_on, let_in_after, out_of, placed, through
 
@@ -98,20 +99,29 @@ class TrafficController:
         Robots that follow each other in a corridor join in the order in which they were let in."""
         before = self._robots.pop(robot, None)
         home_number = None if home is None else self._whole.number_of(home)
-        first, *stops = (self._whole.number_of(one) for one in (post, *towards))
-        over_s = self._whole.crossing_s[first] if on_crossing else 0.0
-        start = placed(first, at_home=(at_home and (on_crossing or not stops)) or self._is_full(first), now_s=now_s)
-        if on_crossing and not stops:
-            start = aside(start, over_s, now_s) if to_home and not at_home else is_on(start, over_s, now_s)
-        for end in stops:
-            lane, is_kept = self._whole.lane(start.post, end), to_home and end == home_number
-            start = further(start, lane, at_home=is_kept or self._is_full(end), now_s=now_s, over_s=over_s)
-            over_s = self._whole.crossing_s[end]
-        if stops and is_let_in:
-            start = is_on(start, over_s, now_s)
+        place = Place(post, at_home, tuple(towards), on_crossing, to_home, is_let_in)
+        start = start_at(self._whole, place, home_number, self._is_full, now_s)
         start = let_in_after(start, [one.start for one in self._robots.values()])
         self._robots[robot] = Participant(home_number, start, before.goals if before else ())
         self._live.plan_all(now_s)
+
+    def is_at(
+        self,
+        robot: str,
+        *,
+        post: str,
+        home: str | None,
+        at_home: bool,
+        towards: Sequence[str] = (),
+        on_crossing: bool = False,
+        to_home: bool = False,
+        is_let_in: bool = False,
+    ) -> bool:
+        """Tell if this robot is known to be there: see `joins`. Which place at a post it leaves or comes to is not
+        compared but where it stands in it."""
+        place = Place(post, at_home, tuple(towards), on_crossing, to_home, is_let_in)
+        home_number = None if home is None else self._whole.number_of(home)
+        return is_same(self._robots[robot].start, start_at(self._whole, place, home_number, lambda _: False, 0.0))
 
     def leaves(self, robot: str, now_s: float) -> None:
         """A robot is taken away: what it had is free."""

@@ -1,0 +1,162 @@
+"""The schedule of a map with bays: robots are where they report to be, and nothing is free before they do.
+
+The schedule knows posts, their bays by number, and crossings; robots ask for spurs and corridors of the track. Which
+bay a robot gets is decided here, when it is let in.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from app.traffic.bays import free_bay
+from app.traffic.robot_locations import Hold, RobotLocation, TrafficSnapshot
+from app.traffic.schedule import HasToWait, Leg, MayEnter, TrafficSchedule, Verdict
+from app.traffic.standing import Standing, bay_ahead, lanes_of, standing
+from fleet.schedule.controller import ComeIn, Denied, GoOn, Granted, LetIn, Waits
+from fleet.schedule.network import Lane
+
+
+class BayTrafficSchedule(TrafficSchedule):
+    """One for a campus whose posts have bays on the floor."""
+
+    # What has happened.
+
+    def _follow_closed(self, snapshot: TrafficSnapshot, now_s: float) -> None:
+        self._close_and_open(snapshot.closed, now_s)
+
+    def _placed(self, before: RobotLocation | None, now: RobotLocation, left_at: Mapping[int, str]) -> RobotLocation:
+        return replace(now, post=standing(self.track, now).post)
+
+    def _is_elsewhere(self, before: RobotLocation, now: RobotLocation) -> bool:
+        return before.home_bay != now.home_bay
+
+    def _join(self, now: RobotLocation, now_s: float) -> None:
+        self.controller.joins(now.robot, home=now.home, now_s=now_s, **_as_told(standing(self.track, now)))
+        self._frozen.discard(now.robot)
+
+    def _follow_one(self, before: RobotLocation, now: RobotLocation, now_s: float) -> None:
+        """What it reports to have left is free. Where that does not lead to where it says to be, it has been carried,
+        or has turned round."""
+        held, left = lanes_of(self.track, now.holds), lanes_of(self.track, before.holds)
+        for lane in (lane for lane in left if lane not in held):
+            self.controller.crossed(now.robot, lane.from_post, now_s)
+            self.controller.cleared(now.robot, lane.from_post, lane.to_post, now_s)
+        where = standing(self.track, now)
+        # A grant alone is no news of where it is.
+        if now.occupies and now.occupies != before.occupies and now.occupies.kind != "crossing":
+            self.controller.crossed(now.robot, where.post, now_s)
+        if not self.controller.is_at(now.robot, home=now.home, **_as_told(where)):
+            self._join(now, now_s)
+
+    # What follows.
+
+    def verdicts(self, understood: Mapping[str, bool], now_s: float) -> Iterator[Verdict]:
+        for name, one in self._known.items():
+            if one.request is None or not one.online or name in self._frozen:
+                continue
+            verdict = self._asked(one, standing(self.track, one), now_s)
+            if isinstance(verdict, MayEnter):
+                self._known[name] = replace(
+                    one, request=None, holds=(*one.holds, *(Hold(*leg) for leg in verdict.legs))
+                )
+            if verdict is not None:
+                yield verdict
+
+    def _asked(self, one: RobotLocation, where: Standing, now_s: float) -> Verdict | None:
+        assert one.request is not None  # noqa: S101  # only those are asked
+        if where.rests:
+            return self._out_of_bay(one, where, now_s)
+        if where.waits_before is not None and one.request.legs[0][0] == where.waits_before:
+            return self._over_the_post_ahead(one, where.waits_before, now_s)
+        if where.on_crossing and not where.towards and one.request.legs[0][0] == where.post:
+            return self._off_the_crossing(one, where, now_s)
+        return None
+
+    def _out_of_bay(self, one: RobotLocation, where: Standing, now_s: float) -> Verdict:
+        """Out of the bay, over the crossing, into the corridor; or to its own home at the same post."""
+        assert one.request is not None and one.occupies is not None  # noqa: S101
+        bay, post = one.occupies.place, where.post
+        asked = next((leg for leg in one.request.legs if self._is_lane(leg)), None)
+        if asked is None or asked[0] != post:
+            return self._aside(one, bay, post, now_s, asked=True)
+        answer = self.controller.claims(one.robot, *asked, now_s)
+        if isinstance(answer, Denied) and answer.instead is not None:
+            answer = self.controller.claims(one.robot, *self._names(answer.instead), now_s)
+        if isinstance(answer, Granted):
+            leg = self._names(answer.lane)
+            return MayEnter(one.robot, ((bay, post), leg), aside=leg != asked)
+        move = self.controller.next_move(one.robot, now_s)
+        if isinstance(move, ComeIn) and isinstance(answer, Waits):
+            return self._aside(one, bay, post, now_s, asked=False)
+        return self._waits(one, asked, answer, now_s)
+
+    def _aside(self, one: RobotLocation, bay: str, post: str, now_s: float, *, asked: bool) -> Verdict:
+        answer = self.controller.comes_in(one.robot, post, now_s)
+        if isinstance(answer, LetIn) and one.home_bay is not None and bay != one.home_bay:
+            return MayEnter(one.robot, ((bay, post), (post, one.home_bay)), aside=not asked)
+        return self._waits(one, (post, one.home_bay or bay), answer, now_s)
+
+    def _over_the_post_ahead(self, one: RobotLocation, post: str, now_s: float) -> Verdict | None:
+        """From the end of its corridor straight on, or into a bay."""
+        assert one.request is not None  # noqa: S101  # only those are asked
+        asked, move = one.request.legs[0], self.controller.next_move(one.robot, now_s)
+        if isinstance(move, GoOn):
+            leg = self._names(move.lane)
+            answer = self.controller.claims(one.robot, *leg, now_s)
+            if isinstance(answer, Granted):
+                return MayEnter(one.robot, (leg,), aside=leg != asked)
+            return self._waits(one, leg, answer, now_s)
+        if not isinstance(move, ComeIn) or self._post(move.post) != post:
+            return None
+        bay = self._bay_at(one, post, at_home=move.at_home)
+        if bay is None:
+            return self._waits(one, asked, None, now_s)
+        let_in = self.controller.comes_in(one.robot, post, now_s)
+        if isinstance(let_in, LetIn):
+            return MayEnter(one.robot, ((post, bay),), aside=self._is_lane(asked))
+        return self._waits(one, asked, let_in, now_s)
+
+    def _off_the_crossing(self, one: RobotLocation, where: Standing, now_s: float) -> Verdict:
+        """It could not get into its bay, or was put on the crossing: into another bay, which is kept for it."""
+        assert one.request is not None  # noqa: S101  # only those are asked
+        bay = self._bay_at(one, where.post, at_home=where.at_home) or self._bay_at(one, where.post, at_home=False)
+        if bay is None or bay == bay_ahead(self.track, one, where.post):
+            return self._waits(one, one.request.legs[0], None, now_s)
+        return MayEnter(one.robot, ((where.post, bay),), aside=one.request.legs[0] != (where.post, bay))
+
+    def _bay_at(self, one: RobotLocation, post: str, *, at_home: bool) -> str | None:
+        if at_home:
+            return one.home_bay
+        return free_bay(self.track, post, one, self._known.values(), self._closed)
+
+    def _waits(self, one: RobotLocation, leg: Leg, answer: Waits | Denied | LetIn | None, now_s: float) -> HasToWait:
+        if isinstance(answer, Waits):
+            return HasToWait(one.robot, self._addresses(leg), answer.robots, max(0.0, answer.until_s - now_s))
+        closed = self._is_lane(leg) and self.track.corridor(*leg).name in self._closed
+        before = dict.fromkeys((*self._holders(leg), *self._in_the_way(one, one.request.goal if one.request else "")))
+        return HasToWait(one.robot, self._addresses(leg), tuple(before), None, closed=closed)
+
+    # Names.
+
+    def _is_lane(self, leg: Leg) -> bool:
+        return not any(self.track.post(place).bay_of for place in leg)
+
+    def _addresses(self, leg: Leg) -> Leg:
+        return self.track.address_of(leg[0]), self.track.address_of(leg[1])
+
+    def _post(self, number: int) -> str:
+        return self.controller.network.posts[number]
+
+    def _names(self, lane: Lane) -> Leg:
+        return self._post(lane.start), self._post(lane.end)
+
+
+def _as_told(where: Standing) -> dict[str, Any]:
+    return {
+        "post": where.post,
+        "at_home": where.at_home,
+        "towards": where.towards,
+        "on_crossing": where.on_crossing,
+        "to_home": where.to_home,
+        "is_let_in": where.is_let_in,
+    }
