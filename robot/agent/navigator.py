@@ -16,7 +16,7 @@ from robot.localization.bays import bay_for, places_to_stand
 from robot.localization.closed import Closed, open_way
 from robot.localization.directions import PLAIN_TURNS, Way, kept_from, next_post, sector
 from robot.localization.docks import nearest_dock, way_out
-from robot.localization.expected import wrong_corridor
+from robot.localization.expected import SHARE, wrong_corridor
 from robot.localization.place import AtPost, Between, Coming, Facing, Leaving, Unknown
 from robot.localization.remembering import Moment
 from robot.localization.steps import corridor_between, gone_astray, marked, turned_round
@@ -32,6 +32,8 @@ LOOKS_BACK_MM = 600.0
 and a base at 200 mm/s rolls on for half a second."""
 MARKER_UNREAD = "marker_unread"
 SURELY_PAST_M = 0.3
+ASKS_BEFORE_MM = 2000.0
+"""Some ten seconds before it is at the waiting point."""
 
 
 class Navigator(Tracker):
@@ -157,6 +159,17 @@ class Navigator(Tracker):
         place = self._place
         ahead = place.towards if isinstance(place, Between | Coming) else None
         return ahead if ahead and self.campus.bays_of(ahead) else None
+
+    @property
+    def nears_a_crossing(self) -> bool:
+        """Return whether a crossing may come so soon that it has to ask for it now: asked for earlier, it would be kept
+        from others for longer."""
+        place = self._place
+        if self.waits_before is None or not isinstance(place, Between | Coming):
+            return False
+        at_mm = place.at_mm if isinstance(place, Coming) else place.ahead_mm
+        doubt_mm = SHARE * 1000 * place.corridor.length_m if isinstance(place, Between) else 0.0
+        return at_mm is None or at_mm - self._odometry.ahead_mm < ASKS_BEFORE_MM + doubt_mm
 
     def may_cross(self) -> bool:
         """Return whether it may go on over the post ahead: into a corridor or a bay there. Any thread may ask."""

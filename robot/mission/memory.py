@@ -365,7 +365,7 @@ class Memory:
                 self.grant(message.legs)
             case Detour():
                 self.grant(message.legs)
-                self.turn_aside(message.legs[0])
+                self.turn_aside(message.legs[-1])  # out of a bay the first leads onto the crossing alone
             case _:  # commands are for the daemon to carry out
                 pass
 

@@ -97,7 +97,8 @@ def _granted_ahead(hands: Hands, way: Sequence[Leg]) -> Iterator[Leg]:
 def detour(hands: Hands) -> Leg | None:
     """The corridor from here that it has to take first, unless the robot knows that to be closed."""
     leg, navigator = hands.missions.held.detour, hands.navigator
-    if leg is None or leg.from_post not in (navigator.at, navigator.waits_before):
+    post = navigator.at and navigator.campus.address_of(navigator.at)
+    if leg is None or leg.from_post not in (navigator.at, post, navigator.waits_before):
         return None
     return None if _is_closed(hands, leg) else leg
 
@@ -144,10 +145,10 @@ class AskAhead:
 
     def __call__(self) -> None:
         navigator, goal = self._hands.navigator, self._hands.navigator.destination
-        if navigator.waits_before is None or navigator.may_cross():
+        if not navigator.nears_a_crossing or navigator.may_cross():
             return
         with suppress(NoRoute):
-            legs = navigator.legs_to(goal or navigator.waits_before)
+            legs = navigator.legs_to(goal or navigator.waits_before or "")
             if legs != self._asked:
                 self._asked = legs
                 self._hands.missions.claims.ask(legs, goal)
