@@ -7,9 +7,8 @@ import asyncio
 import os
 import sys
 
-from campus_mail_client.models import RobotView
-
 from campus_mail_client import AsyncCampusMail
+from campus_mail_client.models import RobotView
 
 
 async def main(changes_wanted: int) -> None:

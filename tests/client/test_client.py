@@ -6,6 +6,9 @@ from collections.abc import Awaitable, Callable
 
 import httpx
 import pytest
+
+from app.accounts.scopes import Scope
+from campus_mail_client import AsyncCampusMail, CampusMail, NoAnswer, Retrying, UnexpectedAnswer
 from campus_mail_client.models import NewDelegate, NewOrder, NoticesRead
 from campus_mail_client.problems import (
     InvalidRequest,
@@ -15,9 +18,6 @@ from campus_mail_client.problems import (
     UnknownOrder,
     UnknownPost,
 )
-
-from app.accounts.scopes import Scope
-from campus_mail_client import AsyncCampusMail, CampusMail, NoAnswer, Retrying, UnexpectedAnswer
 from campus_mail_client.retrying import may_repeat_after_answer, may_repeat_after_failure
 from tests.client.conftest import RECIPIENT, SENDER, Campus
 

@@ -4,10 +4,10 @@ import asyncio
 from collections.abc import AsyncIterator
 
 import pytest
-from campus_mail_client.problems import NotSignedIn
 
 from app.core.settings import Settings
 from campus_mail_client import AsyncCampusMail, Change, NoAnswer, Retrying
+from campus_mail_client.problems import NotSignedIn
 from protocol.clock import SteppedClock
 from tests.app.robots.playing import serving
 from tests.client.conftest import RECIPIENT, Campus
