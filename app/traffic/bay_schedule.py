@@ -10,7 +10,7 @@ from typing import Any
 
 from app.traffic.bays import free_bay
 from app.traffic.robot_locations import Hold, RobotLocation, TrafficSnapshot
-from app.traffic.schedule import HasToWait, Leg, MayEnter, TrafficSchedule, Verdict
+from app.traffic.schedule import Elsewhere, HasToWait, Leg, MayEnter, TrafficSchedule, Verdict
 from app.traffic.standing import Standing, bay_ahead, lanes_of, standing
 from fleet.schedule.controller import ComeIn, Denied, GoOn, Granted, LetIn, Waits
 from fleet.schedule.network import Lane
@@ -106,8 +106,10 @@ class BayTrafficSchedule(TrafficSchedule):
             if isinstance(answer, Granted):
                 return MayEnter(one.robot, (leg,), aside=leg != asked)
             return self._waits(one, leg, answer, now_s)
-        if not isinstance(move, ComeIn) or self._post(move.post) != post:
+        if not isinstance(move, ComeIn):
             return None
+        if self._post(move.post) != post:  # one stands still on the crossing: back to where it came from
+            return Elsewhere(one.robot, (self._post(move.post), post))
         bay = self._bay_at(one, post, at_home=move.at_home)
         if bay is None:
             return self._waits(one, asked, None, now_s)

@@ -104,8 +104,10 @@
      !follow(Try + 1).
 -!follow(Try)[error_msg(Why)] <- !wait_for_help(Why); !follow(Try).
 
-// It stands before a crossing that others have. Where no way on is open, and no bay either, it tries again.
+// It stands before a crossing that others have. Where one stands still on it the service sends it back. Where no way on is
+// open, and no bay either, it tries again.
 +!cross <- wait_to_cross.
+-!cross[reason(turn_back)] <- turn(behind).
 -!cross <- rest(15); !cross.
 
 // Three bumps, a virtual wall, no marker where the post should be: the corridor counts as closed for a while. Back to the

@@ -155,7 +155,8 @@ class AskAhead:
 
 
 def wait_to_cross(hands: Hands, _: Sequence[Value], __: float) -> Run:
-    """Done when it may drive on: over the post, into a bay there, or where the service sends it."""
+    """Done when it may drive on: over the post, into a bay there, or where the service sends it. Denied the corridor
+    that it is in it has to turn back."""
     navigator, claims = hands.navigator, hands.missions.claims
     goals = [goal for goal in (navigator.destination, navigator.waits_before) if goal]
     claim_id: str | None = None
@@ -164,7 +165,10 @@ def wait_to_cross(hands: Hands, _: Sequence[Value], __: float) -> Run:
         nonlocal claim_id
         if navigator.may_cross():
             return DONE
-        if claim_id and claims.denial(claim_id) and len(goals) > 1:
+        denial = claims.denial(claim_id) if claim_id else None
+        if denial and navigator.corridor in denial.avoid:
+            return Ended("turn_back")
+        if denial and len(goals) > 1:
             del goals[0]
         if _why_no_way(hands, goals[0]) is not None:
             return Ended("way_closed")

@@ -253,7 +253,8 @@ ACTIONS: Final = (
     Action(
         "wait_to_cross",
         (),
-        "ask for the way on from the post ahead, or else for a bay there; done when it may drive on",
+        "ask for the way on from the post ahead, or else for a bay there; done when it may drive on; fails with "
+        "turn_back where others stand on the post, with way_closed",
         wait_to_cross,
     ),
     Action(

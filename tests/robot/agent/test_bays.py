@@ -43,6 +43,18 @@ def test_where_nothing_lets_it_cross_it_asks_again() -> None:
     stage.does("rest(15)", "wait_to_cross")
 
 
+def test_sent_back_from_a_crossing_on_which_another_stands_it_turns_round() -> None:
+    stage = Stage(*CARRYING, "at(post3)")
+    stage.does("report(departed,s2)", "set_destination(post4)", "claim(post4)")
+    stage.expect("follow_line")
+    stage.leaves()
+    stage.fails("follow_line", "must_wait")
+    stage.expect("wait_to_cross")
+    stage.fails("wait_to_cross", "turn_back")
+    stage.does("turn(behind)")
+    stage.expect("follow_line")
+
+
 def test_told_to_wait_it_leaves_the_crossing_first() -> None:
     stage = Stage(*HOME, "crossing(post3)", "paused")
     stage.does("set_destination(post3)", "claim(post3)")
