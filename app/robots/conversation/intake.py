@@ -175,7 +175,9 @@ class Intake:
         await _heard(session, robots, rows, now)
         for name, row in rows.items():
             self.fleet.announce(session, row, is_seen=_seen(row) != before[name])
-        self.fleet.have_spoken(session, robots.keys() - rows.keys())
+        # What it has received is no news of a robot: it keeps nobody from resting.
+        telling = {one.speaker.robot for one in said if not isinstance(one.envelope.body, Ack)}
+        self.fleet.have_spoken(session, (robots.keys() - rows.keys()) & telling)
         del ahead
 
     async def _note_acknowledged(self, session: AsyncSession, said: Sequence[Said]) -> None:

@@ -6,8 +6,8 @@ from typing import Any
 
 from sqlalchemy import Engine, event
 
-from app.models import Alarm, OrderEvent, RobotMessage, RobotRow
-from protocol.both_ways import Error
+from app.models import Alarm, MessageToRobot, OrderEvent, RobotMessage, RobotRow
+from protocol.both_ways import Ack, Error
 from protocol.clock import SteppedClock
 from protocol.parts import Activity, Battery, Leg, Position
 from protocol.to_server import Clear, Snapshot, Step
@@ -98,3 +98,26 @@ async def test_what_a_robot_complains_of_rings_an_alarm_that_survives_a_power_cu
             )
             await until(lambda: service.rows(RobotRow, name="r1", battery_ratio=0.5))
         assert begun and durably not in begun
+
+
+async def test_that_a_robot_has_what_it_was_told_wakes_nobody(service: Service, robot: PlayedRobot) -> None:
+    """Each message would be followed by a look at everything; what the robot says of itself is."""
+    woken: list[str] = []
+    async with robot.connected(service.url, await service.enrol("r1")):
+        await robot.greet()
+        await service.order()
+        await robot.mission()
+        service.app.state.parts.fleet.on_change.append(woken.append)
+        await robot.say(Ack())
+
+        async def is_noted() -> bool:
+            return all(row.acked_at is not None for row in await service.rows(MessageToRobot, robot="r1"))
+
+        async def is_woken() -> bool:
+            return bool(woken)
+
+        await until(is_noted)
+        await robot.say(Clear(leg=LEG))
+        await until(is_woken)
+        assert len(await service.rows(RobotMessage, robot="r1")) == 1, "by what it has said, not before"
+        assert woken == ["r1"]
