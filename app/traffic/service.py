@@ -5,6 +5,7 @@ that fails the schedule is made anew from the database, so that it never knows o
 """
 
 from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import Final
 
@@ -46,10 +47,11 @@ class TrafficService:
 
     def __init__(self, fleet: Fleet, charges_first: ChargesFirst = _never) -> None:
         self._fleet = fleet
-        self._polling = PollingLoop(POLL_AGAIN_S, REST_S)
+        self.polling = PollingLoop(POLL_AGAIN_S, REST_S)
         self._schedule: TrafficSchedule | None = None
+        self._seen: TrafficSnapshot | None = None
         self.on_poll: list[Callable[[], None]] = []
-        """Called after each look: what has changed is in the schedule."""
+        """Called after each look that has found something new, which is in the schedule then."""
         self._charges_first = charges_first
 
     @property
@@ -58,15 +60,15 @@ class TrafficService:
         return self._schedule
 
     def wake(self, _changed: str = "") -> None:
-        self._polling.wake()
+        self.polling.wake()
 
     def stop(self) -> None:
         """End `run` after what it is doing."""
-        self._polling.stop()
+        self.polling.stop()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        async for _ in self._polling.until_stopped():
+        async for _ in self.polling.until_stopped():
             try:
                 await self.poll()
             except BaseException:
@@ -98,8 +100,11 @@ class TrafficService:
                 ]
         # What was decided on a claim that is another by now was not said: the schedule must not believe it was.
         self._schedule = schedule if all(said) else None
-        for call in self.on_poll:
-            call()
+        is_news = before != schedule.vanished or any(not isinstance(verdict, HasToWait) for verdict in verdicts)
+        before_it, self._seen = self._seen, _without_times(snapshot)
+        if is_news or self._seen != before_it or self._schedule is None:
+            for call in self.on_poll:
+                call()
 
     def _new_schedule(self) -> TrafficSchedule:
         campus = self._fleet.campus
@@ -200,6 +205,11 @@ class TrafficService:
         if robot.waits_for != waits:
             robot.waits_for = waits
             self._fleet.announce(session, robot)
+
+
+def _without_times(snapshot: TrafficSnapshot) -> TrafficSnapshot:
+    """That a robot was heard is no news of the traffic."""
+    return replace(snapshot, robots={name: replace(one, heard_at=None) for name, one in snapshot.robots.items()})
 
 
 def _is_about(told: datetime | None, until: datetime | None) -> bool:
