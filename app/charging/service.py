@@ -50,19 +50,19 @@ class ChargingService:
     fleet: Fleet
     _demand: Demand = field(default_factory=Demand)
     _learned_at: datetime | None = None
-    _polling: PollingLoop = field(default_factory=lambda: PollingLoop(POLL_EVERY_S, REST_S))
+    polling: PollingLoop = field(default_factory=lambda: PollingLoop(POLL_EVERY_S, REST_S))
 
     def wake(self, _changed: str = "") -> None:
         """Poll soon: an order has changed, so that a robot may be needed elsewhere."""
-        self._polling.wake()
+        self.polling.wake()
 
     def stop(self) -> None:
         """End `run` after what it is doing."""
-        self._polling.stop()
+        self.polling.stop()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        async for _ in self._polling.until_stopped():
+        async for _ in self.polling.until_stopped():
             await self.poll()
 
     async def poll(self) -> None:

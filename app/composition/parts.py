@@ -23,6 +23,7 @@ from app.dispatch.at_once.nearest import NearestRobots
 from app.dispatch.eta_updates import EtaUpdates
 from app.dispatch.fleet_planner import FleetPlanner
 from app.dispatch.held_up import NoRobotComes
+from app.dispatch.planner_process import PlannerProcess
 from app.dispatch.service import Dispatcher
 from app.handover.delegates import Delegating
 from app.handover.service import HandOvers
@@ -60,6 +61,7 @@ class Parts:
     settings: Settings
     clock: Clock
     http_client: HttpClient
+    planner_process: PlannerProcess = field(default_factory=PlannerProcess)
 
     campus: CampusMap = field(init=False)
     server_key: ServerKey = field(init=False)
@@ -159,7 +161,7 @@ class Parts:
     def _add_planning(self) -> None:
         if self.settings.traffic == "schedule":
             self.traffic_service = TrafficService(self.fleet, ChargeFirst(self.fleet).sends)
-            self.planner = FleetPlanner(self.fleet, self.traffic_service)
+            self.planner = FleetPlanner(self.fleet, self.traffic_service, self.planner_process)
             self.charging_service = ChargingService(self.fleet)
         self.dispatcher = Dispatcher(self.fleet, self.planner or NearestRobots(self.fleet))
         self.eta_updates = EtaUpdates(self.fleet, self.traffic_service)

@@ -32,7 +32,7 @@ class PollingLoop:
         waits_first: bool = False,
     ) -> None:
         self._waits_first = waits_first
-        self._again_s, self._rest_s, self._rest, self._longest_rest_s = again_s, rest_s, rest, longest_rest_s
+        self.again_s, self.rest_s, self._rest, self._longest_rest_s = again_s, rest_s, rest, longest_rest_s
         self._woken, self._stopped = asyncio.Event(), asyncio.Event()
         self._begun_s = 0.0
         """When the present look began, or its last piece."""
@@ -53,13 +53,13 @@ class PollingLoop:
     async def until_stopped(self) -> AsyncIterator[None]:
         """The first at once, or when woken. What wakes during a look is seen by the next one."""
         if self._waits_first:
-            await _for(self._woken, self._again_s)
+            await _for(self._woken, self.again_s)
         while not self._stopped.is_set():
             self._woken.clear()
             self._begun_s = asyncio.get_running_loop().time()
             yield
-            await _for(self._stopped, max(self._rest_s, self._earned_s(self._worked_s())))
-            await _for(self._woken, self._again_s)
+            await _for(self._stopped, max(self.rest_s, self._earned_s(self._worked_s())))
+            await _for(self._woken, self.again_s)
 
     async def breathe(self) -> None:
         """Between two pieces of one look: the rest that the first has earned, so that a long look is spread out."""

@@ -80,21 +80,21 @@ class EtaUpdates:
     """The reason of each order, as pages have it."""
     _kept: set[tuple[str, bool]] = field(default_factory=set)
     """Of which stages it is kept what was told."""
-    _polling: PollingLoop = field(
+    polling: PollingLoop = field(
         default_factory=lambda: PollingLoop(POLL_AGAIN_S, LEAST_REST_S, rest=REST, longest_rest_s=LONGEST_REST_S)
     )
 
     def wake(self, _changed: str = "") -> None:
         """A robot, an order or the schedule has changed."""
-        self._polling.wake()
+        self.polling.wake()
 
     def stop(self) -> None:
         """End `run`."""
-        self._polling.stop()
+        self.polling.stop()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        async for _ in self._polling.until_stopped():
+        async for _ in self.polling.until_stopped():
             await self.poll()
 
     async def poll(self) -> None:
@@ -109,7 +109,7 @@ class EtaUpdates:
             return
         robots = {robot.name: robot for _, robot in pairs}
         now = self.fleet.clock.utc()
-        await self._polling.breathe()
+        await self.polling.breathe()
         forecast = await self._forecast(robots, stops, now)
         receive = {stop.order_id: stop.id for stop in stops if stop.action == StopAction.RECEIVE}
         estimates = self.fleet.orders.ledger.estimates
@@ -130,7 +130,7 @@ class EtaUpdates:
     ) -> Mapping[str, Interval]:
         estimates = self.fleet.orders.ledger.estimates
         if self.desk is None:
-            return await by_their_ways(estimates, robots, stops, now, self._rng, self._polling.breathe)
+            return await by_their_ways(estimates, robots, stops, now, self._rng, self.polling.breathe)
         schedule = self.desk.schedule
         if schedule is None:
             return {}
@@ -139,8 +139,8 @@ class EtaUpdates:
     async def _tell(self, news: Sequence[UnderWay], now: datetime) -> None:
         """A few in one transaction: what robots report in that time waits for it."""
         for first in range(0, len(news), AT_ONCE):
-            await self._polling.breathe()
-            if self._polling.is_stopped:
+            await self.polling.breathe()
+            if self.polling.is_stopped:
                 return
             await self._tell_some(news[first : first + AT_ONCE], now)
 

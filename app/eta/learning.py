@@ -75,7 +75,7 @@ class Learning:
     _on_way: dict[str, tuple[str, datetime]] = field(default_factory=dict)
     """The post that each robot passed last, and when, by its clock put right."""
     _let_in: dict[tuple[str, str, str], datetime] = field(default_factory=dict)
-    _polling: PollingLoop = field(
+    polling: PollingLoop = field(
         default_factory=lambda: PollingLoop(
             POLL_EVERY_S, REST_S, rest=REST, longest_rest_s=POLL_EVERY_S, waits_first=True
         )
@@ -99,15 +99,15 @@ class Learning:
 
     def wake(self, _changed: str = "") -> None:
         """An order or a robot has changed."""
-        self._polling.wake()
+        self.polling.wake()
 
     def stop(self) -> None:
         """End `run`."""
-        self._polling.stop()
+        self.polling.stop()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        async for _ in self._polling.until_stopped():
+        async for _ in self.polling.until_stopped():
             await self.poll()
 
     async def poll(self) -> None:

@@ -11,7 +11,6 @@ one with work that must last.
 """
 
 import asyncio
-import time
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager, contextmanager, suppress
 from dataclasses import dataclass, field
@@ -157,14 +156,14 @@ class Writers:
             except BaseException:
                 await connection.close()
                 raise
-            self._group = _Group(connection, durable, time.monotonic())
+            self._group = _Group(connection, durable, asyncio.get_running_loop().time())
         self._group.turns += 1
         return self._group
 
     async def _end_turn(self) -> None:
         """Pass the transaction on to a waiting writer, or commit it."""
         group = self._group
-        if group and not (self._waiting and group.may_go_on(time.monotonic())):
+        if group and not (self._waiting and group.may_go_on(asyncio.get_running_loop().time())):
             await self._commit_open()
 
     async def _commit_open(self) -> None:
