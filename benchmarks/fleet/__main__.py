@@ -1,7 +1,11 @@
-"""Measure the fleet in an event simulation, with the product's own code for traffic."""
+"""Measure the fleet in an event simulation, with the product's own code for traffic.
+
+`simulate` as the first word: one run of the product's whole service (`benchmarks.fleet_simulation`).
+"""
 
 import json
 import platform
+import sys
 import traceback
 from importlib import import_module
 from pathlib import Path
@@ -20,7 +24,7 @@ PARTS = {
     "baselines": "other ways to assign orders and to lock corridors, with the same orders",
     "estimates": "arrivals that people are told, with rush hours, failures and charging: how many come inside",
     "charging": "worn packs, and fewer docks than robots: no robot strands, hardly an order waits for a charge",
-    "campus": "weeks of everything together, with all messages between robots and service, and what goes wrong",
+    "campus": "days of the whole service with simulated robots, by their messages, and what goes wrong",
     "decisions": "how long a decision takes with 20 robots and 200 orders, at first and improved; growth with orders",
 }
 
@@ -72,4 +76,9 @@ def _report(name: str, samples: Samples) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    app(prog_name="python -m benchmarks.fleet")
+    if sys.argv[1:2] == ["simulate"]:
+        import_module("benchmarks.fleet_simulation.command").app(
+            sys.argv[2:], prog_name="python -m benchmarks.fleet simulate"
+        )
+    else:
+        app(prog_name="python -m benchmarks.fleet")

@@ -1,0 +1,369 @@
+"""A simulated robot: real duties and a real link, a simulated body, and a mind that decides as `robot/agent/*.asl` do.
+
+It knows its map, its missions, what it was granted and its battery. A mind does one step at a time and then decides
+anew, so that whatever has come meanwhile counts; what it waits for ends with any news.
+"""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import dataclass, field
+from random import Random
+from typing import ClassVar, Final
+
+from benchmarks.fleet_simulation.body import Body
+from benchmarks.fleet_simulation.network import Network
+from benchmarks.fleet_simulation.people import People
+from benchmarks.fleet_simulation.robot_link import RobotLink
+from benchmarks.fleet_simulation.route import Route
+from maps import CampusMap, NoRoute, shortest_route
+from protocol.clock import Clock
+from protocol.envelope import YOUNGER
+from protocol.parts import Activity, Battery, Leg, Purpose, Stop, StopAction
+from protocol.to_server import Hello, Snapshot, Step
+from robot.agent.perception.battery import BatteryLevel
+from robot.mission.memory import Memory
+from robot.mission.mission import MissionManager
+from robot.mission.outbox import Outbox
+from robot.mission.state import REVOKED
+from robot.mission.store import Store
+
+LOOKS_AT_BATTERY_S: Final = 60.0
+DENIED_S: Final = 15.0
+NO_WAY_S: Final = 30.0
+NO_DOCK_S: Final = 60.0
+SILENCE_S: Final = 120.0
+PURPOSES: Final = {
+    StopAction.LOAD: Purpose.LOAD,
+    StopAction.RECEIVE: Purpose.RECEIVE,
+    StopAction.RETURN: Purpose.RETURN,
+}
+Purposeful = tuple[str, str]
+"""What it is about: a word, and which stop, if any."""
+
+
+@dataclass
+class Mind:
+    """One life of the daemon, from its start to its end. What it knows at first is what its store remembers."""
+
+    name: str
+    home: str | None
+    campus: CampusMap
+    clock: Clock
+    body: Body
+    network: Network
+    people: People
+    store: Store
+    rng: Random
+    link: RobotLink = field(init=False)
+    missions: MissionManager = field(init=False)
+    route: Route = field(init=False)
+    _news: asyncio.Event = field(default_factory=asyncio.Event)
+    _activity: Activity = Activity.IDLE
+    _asks_for: Purposeful | None = None
+    _silent_since_s: float | None = None
+
+    def __post_init__(self) -> None:
+        memory, outbox = Memory(self.store), Outbox(self.store)
+        self.missions = MissionManager(self.store, memory, outbox, self.clock.utc)
+        self.link = RobotLink(self.name, self.network, self.clock, outbox, memory, self._hello, self.rng)
+        self.missions.join(self.link)
+        self.route = Route(self.campus, self.body, self.missions, self.home, self.rng)
+        self.link.on_news = self._hears
+
+    async def run(self) -> None:
+        """Until cancelled: which is what a kill is."""
+        self.body.on_battery.append(self._tells)
+        try:
+            async with asyncio.TaskGroup() as group:
+                group.create_task(self.link.run())
+                group.create_task(self._live())
+                group.create_task(self._look_at_battery())
+        finally:
+            self.body.on_battery.remove(self._tells)
+            self.network.hang_up()
+            self.body.judge.goes_on(self.name)
+
+    # What it hears and tells.
+
+    def _hears(self) -> None:
+        self.missions.take_messages()
+        self._silent_since_s = None if self.link.online else self._silent_since_s or self.clock.now()
+        self._tells()
+        self._news.set()
+
+    def was_moved(self) -> None:
+        """A person has put it down, and it has read the marker there, or is in a dock."""
+        self.route.was_moved(self.body.post)
+        self._news.set()
+
+    async def _look_at_battery(self) -> None:
+        while True:
+            word, weak = self.body.word, self.body.weak
+            self.body.look_at_battery()
+            if (word, weak) != (self.body.word, self.body.weak) or self.body.docked:
+                self._news.set()
+            await asyncio.sleep(LOOKS_AT_BATTERY_S)
+
+    def _tells(self) -> None:
+        held = self.missions.held
+        self.link.snapshot(
+            Snapshot(
+                position=held.position,
+                activity=self._activity,
+                battery=self._battery(),
+                cargo=held.cargo,
+                mission=held.mission_held,
+            )
+        )
+
+    def _shows(self, activity: Activity) -> None:
+        self._activity = activity
+        self._tells()
+
+    def _battery(self) -> Battery:
+        return Battery(ratio=self.body.ratio, charging=self.body.charging, docked=self.body.docked)
+
+    def _hello(self) -> Hello:
+        held = self.missions.held
+        return Hello(
+            position=held.position,
+            cargo=held.cargo,
+            mission=held.mission_held,
+            battery=self._battery(),
+            software="simulated",
+            map_version=self.campus.version,
+            understands=YOUNGER,
+            home=self.home,
+        )
+
+    # What it does.
+
+    def purpose(self) -> Purposeful:
+        """The first that holds: `purpose` in robot/agent/main.asl."""
+        held, body = self.missions.held, self.body
+        if held.revoked or body.in_hands:
+            return "stand_still", ""
+        if body.word is BatteryLevel.LOW or held.recharging:
+            return "charge", ""
+        if body.docked and body.weak and not held.cargo:
+            return "idle", ""
+        if held.paused:
+            return "hold", ""
+        if held.mission is not None:
+            return ("stop", held.stop.id) if held.stop else ("finish", held.mission.id)
+        return ("go_home", "") if self.home and not self._is_home else ("idle", "")
+
+    @property
+    def _is_home(self) -> bool:
+        has_dock = self.campus.posts[self.home].dock is not None if self.home else False
+        return self.body.at == self.home and (self.body.docked or not has_dock)
+
+    async def _live(self) -> None:
+        if self.body.lane is not None:
+            await self._drive_on()
+        elif not self.body.in_hands:
+            self.missions.seen(self.body.post)
+        while True:
+            self._news.clear()
+            self.missions.take_messages()
+            self.route.give_back_crossed()
+            purpose = self.purpose()
+            if self._asks_for not in (None, purpose):
+                self.missions.claims.withdraw()
+                self._asks_for = None
+                self.body.judge.goes_on(self.name)
+            await self._steps[purpose[0]](self)
+
+    async def _news_comes(self, activity: Activity, at_most_s: float | None = None) -> None:
+        self._shows(activity)
+        try:
+            async with asyncio.timeout(at_most_s):
+                await self._news.wait()
+        except TimeoutError:
+            pass
+
+    async def _stand_still(self) -> None:
+        await self._news_comes(Activity.STOPPED)
+
+    def is_let_go(self) -> None:
+        """A person has put it down after its corridors were given to others: it knows where it is again."""
+        self.missions.stop_asked = self.missions.forget_place_asked = False
+        self.missions.seen(self.body.post)
+        self.missions.report_fault(REVOKED, "It knows where it is again.", self.body.post, cleared=True)
+        self._news.set()
+
+    async def _idle(self) -> None:
+        self.route.release()
+        await self._news_comes(self._resting)
+
+    @property
+    def _resting(self) -> Activity:
+        return Activity.CHARGING if self.body.charging else Activity.IDLE
+
+    async def _go_home(self) -> None:
+        assert self.home is not None
+        if await self._is_at(self.home) and self.campus.posts[self.home].dock is not None:
+            await self._dock()
+
+    async def _charge(self) -> None:
+        body = self.body
+        if not self.missions.held.recharging:
+            self.missions.report_charge("low", body.at, body.ratio)
+        if not body.docked:
+            if await self._is_at(self._nearest_dock()):
+                await self._dock()
+            return
+        self.route.release()
+        self.missions.report_charge("charging", body.at, body.ratio)
+        if body.word is BatteryLevel.FULL:
+            self.missions.report_charge("charged", body.at, body.ratio)
+        else:
+            await self._news_comes(Activity.CHARGING)
+
+    def _nearest_dock(self) -> str:
+        docks = [post.name for post in self.campus.docks()]
+        return min(docks, key=lambda dock: shortest_route(self.campus, self.body.post, dock).length_m)
+
+    async def _dock(self) -> bool:
+        self._shows(Activity.DRIVING)
+        if await self.body.dock():
+            self._shows(self._resting)
+            return True
+        await self._news_comes(Activity.WAITING, NO_DOCK_S)
+        return False
+
+    # From post to post.
+
+    async def _is_at(self, goal: str) -> bool:
+        """Whether it stands there; else it comes nearer by a corridor, or waits for one."""
+        if self.body.at == goal:
+            self._goes_on()
+            return True
+        try:
+            leg = self.route.next_leg(goal)
+        except NoRoute:
+            self.route.asks_anywhere()
+            await self._news_comes(Activity.WAITING, NO_WAY_S)
+            return False
+        if leg is None:
+            await self._wait_for_leave(goal)
+            return False
+        self._goes_on()
+        self._shows(Activity.DRIVING)
+        if self.body.docked:
+            await self.body.undock()
+        self.missions.heading_for(leg.to_post)
+        await self.body.enter(leg)
+        self._came_through(leg)
+        return False
+
+    def _goes_on(self) -> None:
+        self._asks_for = None
+        self.body.judge.goes_on(self.name)
+
+    async def _wait_for_leave(self, goal: str) -> None:
+        if self.route.is_denied():
+            await self._news_comes(Activity.WAITING, DENIED_S)
+            return
+        self._asks_for = self.purpose()
+        self.body.judge.waits(self.name)
+        await self._news_comes(Activity.WAITING if not self.body.docked else self._resting, self._patience_s)
+        if self._silent_since_s is not None and self.clock.now() - self._silent_since_s >= SILENCE_S:
+            self.route.out_of_silence()
+
+    @property
+    def _patience_s(self) -> float | None:
+        return None if self._silent_since_s is None else SILENCE_S
+
+    async def _drive_on(self) -> None:
+        """It was switched off in a corridor."""
+        assert self.body.lane is not None
+        leg = self.body.lane
+        self._shows(Activity.DRIVING)
+        await self.body.drive_on()
+        self._came_through(leg)
+
+    def _came_through(self, leg: Leg) -> None:
+        self.route.came_through(leg)
+        stop = self.missions.held.stop
+        if stop is not None and stop.post != leg.to_post:
+            self.missions.report(Step.PASSED, stop.id, leg.to_post)
+        self._tells()
+
+    # Stops.
+
+    async def _finish(self) -> None:
+        mission = self.missions.held.mission
+        assert mission is not None
+        self.missions.finish_mission(mission.id, self.body.at)
+
+    async def _stop(self) -> None:
+        stop = self.missions.held.stop
+        assert stop is not None
+        if self._is_over(stop):
+            self.missions.finish_stop(stop.id)
+            return
+        self.missions.report(Step.DEPARTED, stop.id, self.body.at)
+        if stop.post not in self.campus.posts:
+            self._gives_up(stop, "unknown_post")
+        elif await self._is_at(stop.post):
+            self.missions.report(Step.ARRIVED, stop.id, stop.post)
+            await (self._fill_up(stop) if stop.action is StopAction.DOCK else self._attend(stop))
+
+    def _is_over(self, stop: Stop) -> bool:
+        held = self.missions.held
+        if stop.order_id in held.cancelled and stop.order_id is not None:
+            return True
+        is_aboard = stop.order_id in held.cargo
+        takes_out = stop.action in (StopAction.RECEIVE, StopAction.RETURN)
+        return (stop.action is StopAction.LOAD and is_aboard) or (takes_out and not is_aboard)
+
+    def _gives_up(self, stop: Stop, why: str) -> None:
+        self.missions.report(Step.GAVE_UP, stop.id, self.body.at, why)
+        self.missions.finish_stop(stop.id)
+
+    async def _fill_up(self, stop: Stop) -> None:
+        if not self.body.docked and not await self._dock():
+            return
+        if stop.until_ratio is None or self.body.has(stop.until_ratio):
+            self._is_done(stop)
+            return
+        self.route.release()
+        await self._news_comes(self._resting)
+
+    def _is_done(self, stop: Stop) -> None:
+        self.missions.report(Step.DONE, stop.id, self.body.at)
+        self.missions.finish_stop(stop.id)
+
+    async def _attend(self, stop: Stop) -> None:
+        purpose = PURPOSES.get(stop.action)
+        if purpose is None:  # it parks
+            self._is_done(stop)
+            return
+        if self.body.docked:
+            await self.body.undock()
+        self._shows(Activity.WAITING)
+        comes_s = self.people.come_after_s(purpose)
+        await asyncio.sleep(min(comes_s, stop.wait_limit_s))
+        if self.missions.held.stop != stop:
+            return  # it was taken back meanwhile
+        if comes_s > stop.wait_limit_s:
+            self._gives_up(stop, "no_one_came")
+            return
+        shown = self.people.show(self.name, stop.order_id or "", purpose)
+        self.missions.handed_over(self.missions.at_stop(stop.id), purpose, stop.post, shown)
+        await asyncio.sleep(self.body.taking.table.reached_in_s)
+
+    _steps: ClassVar[Mapping[str, Callable[["Mind"], Awaitable[None]]]] = {
+        "stand_still": _stand_still,
+        "charge": _charge,
+        "idle": _idle,
+        "hold": _idle,
+        "stop": _stop,
+        "finish": _finish,
+        "go_home": _go_home,
+    }
+
+
+MakeMind = Callable[[], Mind]
+"""One life after the other, with the same store and the same body."""
