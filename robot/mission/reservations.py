@@ -28,6 +28,7 @@ class Claims:
         self._held, self._told = held, told
         self.alone = alone
         self._wanted: tuple[Leg, ...] = ()
+        self._goal: str | None = None
         self._claim_id: str | None = None
         self._waits = False
         self._denied: dict[str, Deny] = {}
@@ -49,12 +50,13 @@ class Claims:
         )
 
     def ask(self, legs: Sequence[Leg], goal: str | None = None) -> str | None:
-        """Claim those of `legs` that are not granted yet, once; returns the claim's id, or None if none is needed."""
+        """Claim those of `legs` that are not granted yet, once for each goal; returns the claim's id, or None if none
+        is needed."""
         wanted = tuple(leg for leg in dict.fromkeys(legs) if leg not in self._held().grants)
         if self.alone or not wanted:
             return None
-        if not self._waits or wanted != self._wanted:
-            self._wanted, self._claim_id, self._waits = wanted, new_uuid(), True
+        if not self._waits or (wanted, goal) != (self._wanted, self._goal):
+            self._wanted, self._goal, self._claim_id, self._waits = wanted, goal, new_uuid(), True
             self._outbox.put(Claim(claim_id=self._claim_id, legs=wanted, goal=goal))
             self._denied.clear()  # of older claims, which no action waits for any more
             self._told()
@@ -116,4 +118,4 @@ class Claims:
         return bool(granted)
 
     def _forget(self) -> None:
-        self._wanted, self._claim_id, self._waits = (), None, False
+        self._wanted, self._goal, self._claim_id, self._waits = (), None, None, False

@@ -27,6 +27,14 @@ def test_corridors_are_claimed_once_and_entered_when_granted(desk: Desk) -> None
     assert desk.missions.claims.ask(legs) is None, "nothing left to ask for"
 
 
+def test_the_same_corridors_for_another_goal_are_another_claim(desk: Desk) -> None:
+    """The service plans by the goal: without that it would go on planning for where the robot went before."""
+    first = desk.missions.claims.ask((TO_POST3, TO_POST4), "post4")
+    second = desk.missions.claims.ask((TO_POST3, TO_POST4), "post3")
+    assert second != first
+    assert [one["goal"] for one in desk.told()] == ["post4", "post3"]
+
+
 def test_leaving_a_corridor_gives_it_back(desk: Desk) -> None:
     claim_id = desk.missions.claims.ask([TO_POST3, TO_POST4]) or ""
     desk.hears(Grant(claim_id=claim_id, legs=(TO_POST3, TO_POST4)))
