@@ -1,0 +1,182 @@
+"""One run: a fleet of whole robots on a campus for some minutes, and what the bodies did."""
+
+import asyncio
+import tempfile
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+from random import Random
+from time import process_time
+from typing import Any, Final
+
+from sqlmodel import col, select
+
+from app.models import Alarm, GrantRow
+from benchmarks.fleet_simulation.demand import Saturated
+from benchmarks.fleet_simulation.durations import FITTED, Taking
+from benchmarks.fleet_simulation.loop import LoopClock, SimulatedLoop
+from benchmarks.fleet_simulation.network import Network
+from benchmarks.fleet_simulation.people import People
+from benchmarks.fleet_simulation.service import MEMORY, SHIPPED, PlansInRounds, Service
+from benchmarks.stepped_fleet.bystanders import Bystanders
+from benchmarks.stepped_fleet.judge import TrueFloor
+from benchmarks.stepped_fleet.robots import SteppedRobot
+from maps import CampusMap, read_map
+from maps.campus_map import map_path
+from maps.map_file import load_map_file, toml_of
+from maps.scaling import scaled
+from protocol.ids import ids_from
+from robot.simulated import World
+
+STEP_S: Final = 0.02
+LOOK_EVERY: Final = 5
+"""Steps between two looks of the judge: a tenth of a second."""
+
+
+@dataclass(frozen=True)
+class Fleet:
+    """`scale`: of the corridors. `kill_every_s`: on an average, of each robot, which is off for half a minute then;
+    `cut_every_s`: the same for its network. 0: never."""
+
+    map: str = "carleton"
+    robots: int = 4
+    scale: float = 0.1
+    waiting: int = 6
+    kill_every_s: float = 0.0
+    cut_every_s: float = 0.0
+
+
+@dataclass
+class Run:
+    """`carry_out` gives the figures."""
+
+    fleet: Fleet
+    minutes: float
+    seed: int
+    robots: list[SteppedRobot] = field(default_factory=list)
+    befallen: Counter[str] = field(default_factory=Counter)
+
+    def carry_out(self) -> dict[str, Any]:
+        in_memory = str(MEMORY) if MEMORY.is_dir() else None
+        with (
+            tempfile.TemporaryDirectory(dir=in_memory) as folder,
+            ids_from(Random(f"{self.seed} ids").randbytes),
+            asyncio.Runner(loop_factory=SimulatedLoop) as runner,
+        ):
+            return runner.run(self._live(Path(folder)))
+
+    async def _live(self, folder: Path) -> dict[str, Any]:
+        begun_s = process_time()
+        path = folder / "campus.toml"
+        path.write_text(toml_of(scaled(load_map_file(map_path(self.fleet.map)), self.fleet.scale)))
+        campus, clock = read_map(path), LoopClock(asyncio.get_running_loop())
+        planning = PlansInRounds(Random(f"{self.seed} planning"), 3)
+        service = await Service.begin(folder / "service", str(path), clock, planning, SHIPPED, traffic="schedule")
+        people = People(service.parts, Taking(campus, FITTED, self.seed), Random(f"{self.seed} people"))
+        await people.begin()
+        world, floor = World(campus, seed=self.seed), TrueFloor(campus.track)
+        await self._put_down(campus, world, folder, clock, service)
+        bystanders = Bystanders(people, campus.track, Random(f"{self.seed} bystanders"))
+        ordering = Saturated(self.fleet.waiting).run(people, sorted(campus.posts), Random(f"{self.seed} orders"))
+        tasks = [asyncio.create_task(ordering), *(asyncio.create_task(self._befalls(one)) for one in self.robots)]
+        await self._step(clock, service, floor, bystanders, tasks)
+        found = await self._figures(service, people, floor, bystanders, process_time() - begun_s)
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        for one in self.robots:
+            one.close()
+        await asyncio.sleep(1.0)
+        await service.end()
+        return found
+
+    async def _put_down(
+        self, campus: CampusMap, world: World, folder: Path, clock: LoopClock, service: Service
+    ) -> None:
+        homes = campus.track.home_bays
+        if self.fleet.robots > len(homes):
+            raise ValueError(f"{campus.name} has homes for {len(homes)} robots, not for {self.fleet.robots}")
+        for number, home in enumerate(homes[: self.fleet.robots]):
+            name = f"r{number}"
+            network = Network(service.serve, await service.enrol(name), Random(f"{self.seed} {name} network"))
+            start = f"dock:{home.name}" if home.dock else home.name
+            seed = Random(f"{self.seed} {name}").getrandbits(31)
+            one = SteppedRobot(name, start, world, folder / name, clock, network, seed)
+            one.switch_on()
+            self.robots.append(one)
+
+    async def _step(
+        self,
+        clock: LoopClock,
+        service: Service,
+        floor: TrueFloor,
+        bystanders: Bystanders,
+        tasks: list[asyncio.Task[None]],
+    ) -> None:
+        steps = round(self.minutes * 60 / STEP_S)
+        for step in range(steps):
+            await asyncio.sleep(STEP_S)
+            for one in self.robots:
+                one.tick_until(clock.now())
+            if step % LOOK_EVERY == 0:
+                poses = {one.name: one.body.body.true_pose for one in self.robots}
+                floor.look(poses)
+            if step % 50 == 0:
+                service.check()
+                for task in tasks:
+                    if task.done():
+                        task.result()
+                await bystanders.tick(self.robots, clock.now())
+                floor.look_at_grants(poses, await _granted(service), set())
+
+    async def _befalls(self, one: SteppedRobot) -> None:
+        rng = Random(f"{self.seed} {one.name} fate")
+        rates = {"kill": self.fleet.kill_every_s, "cut": self.fleet.cut_every_s}
+        due = {what: rng.expovariate(1 / every_s) for what, every_s in rates.items() if every_s}
+        if not due:
+            await asyncio.Event().wait()
+        while True:
+            what = min(due, key=due.__getitem__)
+            wait_s = due[what]
+            await asyncio.sleep(wait_s)
+            due = {other: left_s - wait_s for other, left_s in due.items()}
+            due[what] = rng.expovariate(1 / rates[what])
+            self.befallen[what] += 1
+            if what == "kill":
+                one.kill()
+                await asyncio.sleep(30.0)
+                one.switch_on()
+            else:
+                await one.network.be_away(rng.uniform(5.0, 120.0))
+
+    async def _figures(
+        self, service: Service, people: People, floor: TrueFloor, bystanders: Bystanders, took_s: float
+    ) -> dict[str, Any]:
+        states = await people.states()
+        async with service.parts.database.reading() as session:
+            alarms = Counter(alarm.name for alarm in (await session.exec(select(Alarm))).all())
+        judge = floor.collisions
+        return {
+            "robot_hours": self.fleet.robots * self.minutes / 60,
+            "overlaps": len(judge.overlaps),
+            "touches": judge.touches,
+            "collisions": [str(one) for one in judge.found],
+            "ungranted": floor.ungranted,
+            "longest_on_a_crossing_s": round(floor.longest_on_crossing_s, 1),
+            "driven_m": round(floor.driven_m),
+            "handed_over": bystanders.handed_over,
+            "orders": dict(states),
+            "astray": await people.astray(frozenset()),
+            "befallen": dict(self.befallen),
+            "alarms": dict(alarms),
+            "processor_s": round(took_s),
+        }
+
+
+async def _granted(service: Service) -> dict[str, set[str]]:
+    async with service.parts.database.reading() as session:
+        held = (await session.exec(select(GrantRow).where(col(GrantRow.cleared_at).is_(None)))).all()
+    granted: dict[str, set[str]] = {}
+    for row in held:
+        granted.setdefault(row.robot, set()).add(row.corridor)
+    return granted
