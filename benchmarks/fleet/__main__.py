@@ -1,6 +1,7 @@
 """Measure the fleet in an event simulation, with the product's own code for traffic.
 
-`simulate` as the first word: one run of the product's whole service (`benchmarks.fleet_simulation`).
+`simulate` as the first word: one run of the product's whole service (`benchmarks.fleet_simulation`); `stepped`: one of
+whole robots with it, body by body (`benchmarks.stepped_fleet`).
 """
 
 import json
@@ -75,10 +76,10 @@ def _report(name: str, samples: Samples) -> dict[str, Any]:
         return {"figures": {}, "wanted": [], "failed": f"{type(error).__name__}: {error}"}
 
 
+RUNS = {"simulate": "benchmarks.fleet_simulation.command", "stepped": "benchmarks.stepped_fleet.command"}
+
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["simulate"]:
-        import_module("benchmarks.fleet_simulation.command").app(
-            sys.argv[2:], prog_name="python -m benchmarks.fleet simulate"
-        )
+    if (run := sys.argv[1:2]) and run[0] in RUNS:
+        import_module(RUNS[run[0]]).app(sys.argv[2:], prog_name=f"python -m benchmarks.fleet {run[0]}")
     else:
         app(prog_name="python -m benchmarks.fleet")

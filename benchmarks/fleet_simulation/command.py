@@ -45,7 +45,7 @@ def simulate(
     calm: Annotated[bool, typer.Option(help="Look less often at what only time changes: for long runs.")] = False,
 ) -> None:
     """Run a fleet on the product's own service, in simulated time; print what came of it as JSON."""
-    _hash_alike()
+    begin_with_like_hashes()
     simulates_only()
     demand: Demand = RushHours(orders_a_day) if orders_a_day else Saturated(waiting or robots + 5)
     ground = Ground(campus, bays, docks or robots)
@@ -59,7 +59,7 @@ def simulate(
 def _whereof(calm: bool, seed: int) -> dict[str, Any]:
     return {
         "mode": f"schedule, {'calm' if calm else 'as shipped'}",
-        "code": _commit(),
+        "code": commit(),
         "command": " ".join(["python -m benchmarks.fleet simulate", *sys.argv[2:]]),
         "seed": seed,
         "durations": "placeholders",
@@ -67,13 +67,13 @@ def _whereof(calm: bool, seed: int) -> dict[str, Any]:
     }
 
 
-def _commit() -> str:
+def commit() -> str:
     asked = ["git", "describe", "--always", "--dirty"]
     told = subprocess.run(asked, cwd=ROOT, capture_output=True, text=True, check=False)
     return told.stdout.strip() or "unknown"
 
 
-def _hash_alike() -> None:
+def begin_with_like_hashes() -> None:
     """Begin again with strings that hash the same each time: sets of them are gone through in that order."""
     if os.environ.get("PYTHONHASHSEED") != "0":
         os.execve(sys.executable, sys.orig_argv, {**os.environ, "PYTHONHASHSEED": "0"})  # noqa: S606

@@ -1,0 +1,49 @@
+"""Whole robots with the whole service in one stepped world: nobody touches anybody, and the judge would see it."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from benchmarks.stepped_fleet.judge import TrueFloor
+from benchmarks.stepped_fleet.run import Fleet, Run
+from maps import find_map
+from robot.simulated.true_poses import TruePose
+
+MAP = Path(__file__).parent / "bays.toml"
+TRACK = find_map(MAP).track
+
+
+def pose(at_s: float, x_m: float, y_m: float) -> TruePose:
+    return TruePose(at_s, x_m, y_m, 0.0, 0)
+
+
+def test_the_judge_sees_bodies_that_overlap():
+    floor = TrueFloor(TRACK)
+    for at_s, x_m in ((0.0, 1.9), (1.0, 1.6), (2.0, 1.3)):
+        floor.look({"r1": pose(at_s, 1.0, 2.0), "r2": pose(at_s, x_m, 2.0)})
+    assert [(one.one, one.other) for one in floor.collisions.overlaps] == [("r1", "r2")]
+
+
+@pytest.mark.parametrize(("granted", "seen"), [({"post2-post3"}, 0), ({"post1-post2"}, 1), (set(), 1)])
+def test_the_judge_sees_a_corridor_that_was_not_granted(granted: set[str], seen: int):
+    floor = TrueFloor(TRACK)
+    for _ in range(3):
+        floor.look_at_grants({"r1": pose(0.0, 1.0, 2.0)}, {"r1": granted}, set())
+    assert len(floor.ungranted) == seen
+
+
+def test_the_judge_counts_how_long_a_robot_is_on_a_crossing():
+    floor = TrueFloor(TRACK)
+    for at_s in (0.0, 4.0, 9.0):
+        floor.look({"r1": pose(at_s, 2.0 + 0.3 * math.sin(at_s), 2.0)})
+    floor.look({"r1": pose(12.0, 2.0, 3.0)})
+    assert floor.longest_on_crossing_s == 9.0
+
+
+@pytest.mark.nightly
+def test_two_robots_with_the_whole_service_deliver_and_touch_nothing():
+    figures = Run(Fleet(str(MAP), robots=2, scale=1.0, waiting=3), minutes=5, seed=1).carry_out()
+    assert (figures["touches"], figures["ungranted"], figures["astray"]) == (0, [], [])
+    assert figures["orders"]["delivered"] >= 1
+    assert 0 < figures["longest_on_a_crossing_s"] < 20
