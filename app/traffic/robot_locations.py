@@ -100,7 +100,7 @@ async def read_traffic(session: AsyncSession, campus: CampusMap) -> TrafficSnaps
     placed = select(RobotRow).where(col(RobotRow.post).is_not(None), col(RobotRow.taken_out_at).is_(None))
     rows = (await session.exec(placed.order_by(RobotRow.name))).all()
     holds, wishes, goals = await _holds(session), await _requests(session, campus), await _goals(session)
-    occupied = await _occupied(session)
+    occupied = await _occupied(session, campus.track)
     closed = await closed_names(session)
     robots = {
         row.name: _robot_location(
@@ -188,9 +188,11 @@ async def _holds(session: AsyncSession) -> dict[str, list[Hold]]:
     return held
 
 
-async def _occupied(session: AsyncSession) -> dict[str, Occupied]:
+async def _occupied(session: AsyncSession, track: CampusMap) -> dict[str, Occupied]:
+    """What was reported on another map says nothing on this one."""
     rows = (await session.exec(select(OccupancyRow))).all()
-    return {row.robot: Occupied(row.kind, row.place, row.towards) for row in rows}
+    known = (row for row in rows if {row.place, row.towards or row.place} <= track.posts.keys())
+    return {row.robot: Occupied(row.kind, row.place, row.towards) for row in known}
 
 
 async def _requests(session: AsyncSession, campus: CampusMap) -> dict[str, ReservationRequest]:

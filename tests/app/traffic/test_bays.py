@@ -8,7 +8,7 @@ from random import Random
 import pytest
 
 from app.core.settings import Settings
-from app.models import GrantRow
+from app.models import GrantRow, OccupancyRow
 from protocol.clock import SteppedClock
 from tests.app.robots.playing import PlayedRobot, Service, serving, until
 from tests.app.traffic.bay_travelling import MAP, BayTraveller, Floor, all_of
@@ -56,3 +56,14 @@ async def test_three_robots_never_meet_and_all_arrive(service: Service, clock: S
             await all_of(robots, ways)
     assert [one.place for one in robots] == list(HOMES)
     assert set(floor.taken) == set(HOMES)
+
+
+async def test_what_was_reported_on_another_map_stops_nobody(service: Service, clock: SteppedClock) -> None:
+    robots = travellers(clock, Floor(), HOMES[:2])
+    async with robots[0].greeted(service), robots[1].greeted(service):
+        await until(lambda: service.rows(OccupancyRow, robot="r2"))
+        async with service.app.state.parts.database.transaction() as session:
+            row = await session.get_one(OccupancyRow, "r2")
+            row.place = "library_bay1"
+        async with asyncio.timeout(60):
+            await robots[0].go_to("post4")
