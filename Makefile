@@ -8,7 +8,7 @@ ARGS ?=
 ALONE_IN = $(shell grep -rl --include='*.py' 'mark\.alone' tests)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-develop setup-robot test test-all test-beside test-on-postgresql test-alone test-nightly nightly-beside nightly-on-postgresql nightly-alone check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons android screenshots fuzz-api docs pin clean
+.PHONY: help setup setup-develop setup-robot test test-all test-beside test-on-postgresql test-alone test-nightly nightly-beside nightly-on-postgresql nightly-alone check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet mutants-fleet fuzz-mind client pages icons android screenshots fuzz-api docs pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -120,6 +120,9 @@ bench-service-kills: setup-develop ## Kill the service 300 times under load: wha
 
 bench-fleet: setup-develop ## Measure the fleet in an event simulation: every small map, throughput, deadlocks; JSON and plots
 	@$(BIN)/python -m benchmarks.fleet $(ARGS)
+
+mutants-fleet: setup-develop ## Break the traffic rules on purpose, forty times: says which test sees each; ARGS="crossing" runs some
+	@$(BIN)/python -m benchmarks.fleet.mutants $(ARGS)
 
 fuzz-mind: setup-develop ## Feed the mind 10,000 mangled programs: each is read and run, or what is wrong is named
 	@$(BIN)/python -m benchmarks.fuzz_mind $(ARGS)

@@ -6,6 +6,7 @@ look → decide → improve, in a process of its own → write, if it still hold
 
 import asyncio
 from contextlib import suppress
+from random import Random
 from typing import Final
 
 import structlog
@@ -44,6 +45,7 @@ class FleetPlanner:
             fleet.settings, Charges(fleet.orders.ledger.ways, fleet.settings, fleet.spending.rates)
         )
         self._process = process or PlannerProcess()
+        self._rng = Random(0)
         self._planned: frozenset[str] = frozenset()
         self._something_new = asyncio.Event()
         self._stopped = asyncio.Event()
@@ -76,7 +78,7 @@ class FleetPlanner:
 
     def _decide(self, work: OpenWork, schedule: TrafficSchedule) -> Decision | None:
         clock = self._fleet.clock
-        return decide(self._scenes.of(work, schedule.controller, clock.utc(), clock.now()))
+        return decide(self._scenes.of(work, schedule.controller, clock.utc(), clock.now()), self._rng)
 
     async def _carry_out(self, schedule: TrafficSchedule | None, decision: Decision, changes: Changes) -> bool:
         """False if it does not hold any more."""

@@ -7,6 +7,7 @@ anything went wrong.
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from random import Random
 from typing import Final
 
 import structlog
@@ -62,12 +63,14 @@ Verdict = MayEnter | HasToWait | Elsewhere
 @dataclass
 class TrafficSchedule:
     """One for a campus. `vanished`: robots that were not heard of for long; they count as standing.
-    `estimates`: how long corridors took, as it was known when this was made; without them lengths decide."""
+    `estimates`: how long corridors took, as it was known when this was made; without them lengths decide. `rng`: the
+    caller's, who makes this anew and goes on with it."""
 
     campus: CampusMap
     settings: Settings
     vanished: frozenset[str] = frozenset()
     estimates: Estimates | None = None
+    rng: Random = field(default_factory=lambda: Random(0))
     controller: TrafficController = field(init=False)
     track: CampusMap = field(init=False)
     _known: dict[str, RobotLocation] = field(default_factory=dict)
@@ -76,7 +79,7 @@ class TrafficSchedule:
 
     def __post_init__(self) -> None:
         self.track = self.campus.track
-        self.controller = TrafficController(network_for(self.campus, self.settings, self.estimates))
+        self.controller = TrafficController(network_for(self.campus, self.settings, self.estimates), self.rng)
 
     @property
     def known(self) -> Mapping[str, RobotLocation]:

@@ -7,6 +7,7 @@ that fails the schedule is made anew from the database, so that it never knows o
 from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import replace
 from datetime import datetime, timedelta
+from random import Random
 from typing import Final
 
 import structlog
@@ -53,6 +54,7 @@ class TrafficService:
         self.on_poll: list[Callable[[], None]] = []
         """Called after each look that has found something new, which is in the schedule then."""
         self._charges_first = charges_first
+        self._rng = Random(0)
 
     @property
     def schedule(self) -> TrafficSchedule | None:
@@ -109,7 +111,8 @@ class TrafficService:
     def _new_schedule(self) -> TrafficSchedule:
         campus = self._fleet.campus
         kind = TrafficSchedule if campus.track is campus else BayTrafficSchedule
-        return kind(campus, self._fleet.settings, estimates=self._fleet.orders.ledger.estimates)
+        estimates = self._fleet.orders.ledger.estimates
+        return kind(campus, self._fleet.settings, estimates=estimates, rng=self._rng)
 
     def _vanished(self, snapshot: TrafficSnapshot, now: datetime) -> frozenset[str]:
         """Silent for long, and not at home: without network robots are for minutes, with a flat battery for good."""

@@ -20,6 +20,7 @@ from benchmarks.fleet.samples import PLOTS, Samples
 # What each shows; the modules are loaded when they are run.
 PARTS = {
     "every_map": "exhaustively, on every small map: robots come home from everywhere, and take on more",
+    "interleavings": "exhaustively, on small maps: reports that come late, twice or after a restart: no two meet",
     "throughput": "tunnels, saturated demand: what is delivered, beside the same demand without conflicts",
     "never_stuck": "five kinds of map, late and dead robots, closed corridors: no deadlock, and nothing waits for ever",
     "baselines": "other ways to assign orders and to lock corridors, with the same orders",

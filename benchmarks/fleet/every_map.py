@@ -59,20 +59,20 @@ def measure(samples: Samples) -> dict[str, Any]:
     return {**seen.figures(), **by_posts}
 
 
-def look_at(posts: int, *, every_goal: bool = True) -> Seen:
+def look_at(posts: int, *, every_goal: bool = True, crossing_s: float = 0.0) -> Seen:
     """Every connected map with so many posts."""
     seen = Seen()
     for edges in connected_maps(posts):
-        seen.add(look_at_map(posts, edges, every_goal=every_goal))
+        seen.add(look_at_map(posts, edges, every_goal=every_goal, crossing_s=crossing_s))
     return seen
 
 
-def look_at_map(posts: int, edges: Edges, *, every_goal: bool = True) -> Seen:
+def look_at_map(posts: int, edges: Edges, *, every_goal: bool = True, crossing_s: float = 0.0) -> Seen:
     """One map with one bay at each post and with two, and one to four robots with a home place each: all at the same
     post, or spread. `every_goal`: each robot is given each goal, else one of them."""
     seen = Seen(maps=1)
     for bays in (1, 2):
-        network = network_on(posts, edges, (bays,) * posts)
+        network = replace(network_on(posts, edges, (bays,) * posts), crossing_s=(crossing_s,) * posts)
         for homes in _homes(posts):
             seen.fleets += 1
             _look_at_fleet(Fleet(network, homes), seen, every_goal=every_goal)

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import compress
 from math import inf
+from random import Random
 
 from fleet.assignment.candidates import candidates, waiting_orders
 from fleet.assignment.cost import plan_cost_s
@@ -36,16 +37,17 @@ class Decision:
         return {stop.order: name for name, route in self.routes.items() for stop in route if stop.order}
 
 
-def decide(problem: AssignmentProblem) -> Decision | None:
+def decide(problem: AssignmentProblem, rng: Random | None = None) -> Decision | None:
     """The first answer that holds. None only where nothing is kept that holds, and not everybody can come home: robots
-    that cannot be planned for must not be in the problem, nor corridors that they block."""
+    that cannot be planned for must not be in the problem, nor corridors that they block. `rng`: for the order in which
+    robots are planned, where nothing else says it."""
     tidy = tidied(problem)
     before = {name: robot.route for name, robot in tidy.robots.items()}
     waiting = waiting_orders(tidy, before)
     first = give_overdue(tidy, before, [order for order in waiting if tidy.is_overdue(order.id)])
     left = waiting_orders(tidy, first.routes) if first.choices else waiting
     given = give_orders(tidy, first.routes, candidates(tidy, first.routes, left))
-    timed = time_first(tidy, given.routes)
+    timed = time_first(tidy, given.routes, rng or Random(0))
     if timed is None:
         return None
     choices = choices_left((*first.choices, *given.choices), timed.routes)

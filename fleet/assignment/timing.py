@@ -36,7 +36,7 @@ def changed(tasks: Tasks, kept: Kept) -> list[str]:
     return sorted(name for name, task in tasks.items() if name not in there or kept.goals.get(name) != task.goals)
 
 
-def time_first(problem: AssignmentProblem, routes: Routes) -> Timed | None:
+def time_first(problem: AssignmentProblem, routes: Routes, rng: Random) -> Timed | None:
     """The first schedule for these routes that is found: what is kept stays, and new work is planned round it.
 
     None only if nothing is kept, or if that is void, and not everybody can come home either.
@@ -49,7 +49,7 @@ def time_first(problem: AssignmentProblem, routes: Routes) -> Timed | None:
         timed = _one_by_one(problem, routes, problem.kept)
         if timed is not None:
             return timed
-    anew = sound(problem, tasks, first_plan(problem.network, tasks, Random(0)))
+    anew = sound(problem, tasks, first_plan(problem.network, tasks, rng))
     return None if anew is None else Timed(routes, tasks, anew)
 
 

@@ -34,8 +34,9 @@ def waits_for(
 ) -> Iterator[str]:
     """Return the robots that must go on before this one may enter its next corridor: none, if it may."""
     mine = journeys[robot].legs[1]
-    others = {other: start for other, start in starts.items() if other != robot}
-    for other, start in others.items():
+    for other, start in starts.items():
+        if other == robot:
+            continue
         coming = journeys[other].legs[1:] if other in journeys else ()
         if any(_goes_before((leg, other), (mine, robot)) for leg in coming) or any(
             _is_in_the_way(network, one, mine, now_s) for one in (start, *start.on_the_way())
@@ -44,9 +45,9 @@ def waits_for(
     if not mine.at_home:
         there = [
             other
-            for other, start in others.items()
+            for other, start in starts.items()
             for one in (start, *start.on_the_way())
-            if _stands_at(one, mine.post)
+            if other != robot and _stands_at(one, mine.post)
         ]
         if len(there) >= network.bays[mine.post]:
             yield from there

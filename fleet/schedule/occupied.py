@@ -44,9 +44,11 @@ class Occupied:
         """Put in everything that a robot takes on these legs; the last stay ends at `until_s`."""
         crossing_s = self._network.crossing_s
         for leg, leaves_s in stays(legs):
-            if leg.lane is not None:
-                self._pass(robot, leg.lane, leg.enter_s, leg.arrive_s)
-                self.cross(robot, leg.lane.start, leg.enter_s, leg.enter_s + crossing_s[leg.lane.start])
+            lane = leg.lane
+            if lane is not None:
+                self._pass(robot, lane, leg.enter_s, leg.arrive_s)
+                if crossing_s[lane.start]:
+                    self.cross(robot, lane.start, leg.enter_s, leg.enter_s + crossing_s[lane.start])
             if leg.over_s:
                 self.cross(robot, leg.post, leg.arrive_s, leg.stands_s)
             if not leg.at_home:
@@ -126,7 +128,8 @@ class Occupied:
         self._free.pop(post, None)
 
     def _shut(self, lane: Lane) -> list[Span]:
-        clear_s, takes_s, after_s = self._network.clearance_s, self._network.takes_s(lane), lane.following_s
+        clear_s, after_s = self._network.clearance_s, lane.following_s
+        takes_s = self._network.crossing_s[lane.start] + lane.travel_s
         shut = []
         for _, backwards, enter_s, leave_s in self._passages[lane.corridor]:
             if after_s is not None and backwards == lane.backwards:

@@ -80,6 +80,7 @@ class _Search:
         self._left_s = _left(network, goals)
         self._ahead: list[tuple[float, float, int, _Node]] = []
         self._pushed = 0
+        # One that goes straight on can be earlier and yet worse, if it can be later by less.
         self._reached: dict[tuple[int, bool, int, float, float], float] = {}
 
     def run(self, start: Start) -> Found | None:
@@ -93,7 +94,8 @@ class _Search:
             leg = node.leg
             if node.goals == len(self._goals) and not node.passes and self._may_end(leg, node.until_s):
                 return _found(node)
-            state = _state(node)
+            latest_s = leg.ready_s + node.slack_s if node.passes else inf
+            state = (leg.post, leg.at_home, node.goals, node.until_s, latest_s)
             if reached.get(state, inf) > leg.ready_s:
                 reached[state] = leg.ready_s
                 self._go_on(node)
@@ -131,15 +133,15 @@ class _Search:
 
     def _enter(self, node: _Node, lane: Lane) -> None:
         """Everything that is reached through this lane: home, and each span in which a bay is free."""
-        windows = self._taken.entries(lane)
-        crosses = self._crossing_s[lane.start] or self._crossing_s[lane.end]
+        end, ready_s, until_s, windows = lane.end, node.leg.ready_s, node.until_s, self._taken.entries(lane)
+        crosses = self._crossing_s[lane.start] or self._crossing_s[end]
         arrive = self._cross_and_arrive if crosses else self._arrive
-        if lane.end == self._home:
+        if end == self._home:
             arrive(node, lane, windows, _ALWAYS, at_home=True)
-        for span in self._taken.free(lane.end):
-            if span[0] > node.until_s:
+        for span in self._taken.free(end):
+            if span[0] > until_s:
                 break
-            if span[1] > node.leg.ready_s:
+            if span[1] > ready_s:
                 arrive(node, lane, windows, span, at_home=False)
 
     def _arrive(self, node: _Node, lane: Lane, windows: Sequence[Span], span: Span, *, at_home: bool) -> None:
@@ -193,11 +195,15 @@ class _Search:
 
     def _pass(self, leg: Leg, until_s: float, before: _Node | None, slack_s: float, later_s: float = 0.0) -> None:
         """It goes straight on at the end of this leg."""
-        served, done_s = (0, leg.arrive_s) if before is None else (before.goals, before.done_s)
+        served, done_s = (0, leg.ready_s) if before is None else (before.goals, before.done_s)
         if before is not None and before.passes:
             slack_s = min(slack_s, before.slack_s - later_s)
         passing = leg._replace(ready_s=leg.arrive_s, over_s=0.0)
-        self._push(_Node(passing, served, done_s, until_s, before, True, slack_s, later_s))
+        key = self._key(leg.post, served, leg.arrive_s, done_s)
+        if key[0] < self._within_s and key[1] < inf:
+            self._pushed += 1
+            node = _Node(passing, served, done_s, until_s, before, True, slack_s, later_s)
+            heapq.heappush(self._ahead, (*key, self._pushed, node))
 
     def _reach(self, leg: Leg, until_s: float, before: _Node | None, later_s: float = 0.0) -> None:
         """Serve what can be served, or less: a robot that serves all of it may then be in another's way."""
@@ -205,19 +211,17 @@ class _Search:
         served, done_s = (0, ready_s) if before is None else (before.goals, before.done_s)
         goals, done = self._goals, served
         while ready_s <= until_s:
-            reached = leg._replace(goals=done - served, ready_s=ready_s) if done > served else leg
-            self._push(_Node(reached, done, done_s, until_s, before, later_s=later_s))
+            key = self._key(post, done, ready_s, done_s)
+            if key[0] < self._within_s and key[1] < inf:
+                self._pushed += 1
+                reached = leg if done == served else leg._replace(goals=done - served, ready_s=ready_s)
+                node = _Node(reached, done, done_s, until_s, before, False, inf, later_s)
+                heapq.heappush(self._ahead, (*key, self._pushed, node))
             if done == len(goals) or goals[done].post != post:
                 break
             goal = goals[done]
             ready_s = (ready_s if ready_s > goal.not_before_s else goal.not_before_s) + goal.handling_s
             done, done_s = done + 1, ready_s
-
-    def _push(self, node: _Node) -> None:
-        key = self._key(node.leg.post, node.goals, node.leg.ready_s, node.done_s)
-        if key[0] < self._within_s and key[1] < inf and self._reached.get(_state(node), inf) > node.leg.ready_s:
-            self._pushed += 1
-            heapq.heappush(self._ahead, (*key, self._pushed, node))
 
     def _key(self, post: int, done: int, ready_s: float, done_s: float) -> tuple[float, float]:
         """No end that is reached from here is better than this: when the last goal is done, then when it is home."""
@@ -227,12 +231,6 @@ class _Search:
         if self._may_end_in_a_bay or self._home is None:
             return done_s, ready_s
         return done_s, ready_s + way_s[self._home]
-
-
-def _state(node: _Node) -> tuple[int, bool, int, float, float]:
-    """One that passes can be earlier and yet worse, if it can be later by less."""
-    latest_s = node.leg.ready_s + node.slack_s if node.passes else inf
-    return node.leg.post, node.leg.at_home, node.goals, node.until_s, latest_s
 
 
 def _left(network: Network, goals: Sequence[Goal]) -> list[float]:

@@ -135,6 +135,8 @@ def _apart(network: Network, first: Leg, second: Leg) -> bool:
 
 
 def _on_crossings(network: Network, tasks: Mapping[str, Task], journeys: Mapping[str, Journey]) -> Iterator[str]:
+    if not (network.shut or any(network.crossing_s)):
+        return
     moves: dict[int, list[tuple[float, float, str, bool]]] = {}
     for robot, task in tasks.items():
         for post, until_s in task.start.crossings():

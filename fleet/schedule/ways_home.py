@@ -120,7 +120,7 @@ def undisturbed(network: Network, work: Journeys, kept: Journeys) -> Journeys:
             passages[visit.leg.lane.corridor].append(visit)
         if not visit.leg.at_home:
             standing[visit.leg.post].append(visit)
-        for post, at_s in _crossed(network, visit.leg):
+        for post, at_s in _crossed(network, visit.leg) if network.has_crossings else ():
             crossing[post].append(visit._replace(leg=visit.leg._replace(enter_s=at_s, arrive_s=at_s)))
     disturbed: set[str] = set()
     for through in passages.values():

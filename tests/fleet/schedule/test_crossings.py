@@ -1,13 +1,13 @@
 """The crossing of a post is one robot's until it reports that it is off it, and so is what it leaves."""
 
-from copy import deepcopy
 from dataclasses import replace
+from itertools import pairwise
 
 from fleet.schedule.controller import ComeIn, GoOn, Granted, LetIn, TrafficController, Waits
 from fleet.schedule.execution import waits_to_cross
 from fleet.schedule.journey import Goal, Journey, Leg, Start, Task, standing
 from fleet.schedule.network import Network
-from fleet.schedule.planning import plan
+from fleet.schedule.planning import Schedule, plan
 from fleet.schedule.validation import problems
 from tests.fleet.schedule.test_controller import line
 from tests.fleet.schedule.test_shut_in import star
@@ -129,21 +129,32 @@ def test_a_robot_goes_straight_on_if_it_can_soon_and_comes_in_if_it_cannot() -> 
 
 
 def test_no_question_changes_where_a_robot_is_believed_to_be() -> None:
+    """It is to make room before it goes on, and asks whether it may go on at once."""
     controller = TrafficController(crossed_line(3))
     controller.joins("r1", post="b", home="b", at_home=False, now_s=0.0)
-    controller.joins("r2", post="a", home="a", at_home=True, now_s=0.0)
     controller.joins("r3", post="b", home="c", at_home=False, now_s=0.0, towards=["c"], to_home=True)
-    assert controller.give("r2", [Goal(1, 5.0, key="two")], 0.0)
-    assert controller.next_move("r1", 1.0) == ComeIn(1, at_home=True), "to make room"
-    before = deepcopy(controller.tasks(2.0))
-    assert isinstance(controller.claims("r2", "a", "b", 2.0), Waits)
+    assert controller.give("r1", [Goal(2, 5.0, key="one")], 0.0)
+    journeys = controller.journeys(1.0)
+    stays, *further = journeys["r1"].work
+    aside = Leg(None, 1.0, 1.0, 1, True, 0, 1.0 + OVER_S, OVER_S)
+    journeys["r1"] = replace(journeys["r1"], work=(stays, aside, *further))
+    assert controller.adopt({}, Schedule(journeys, 0.0), 1.0)
+    before = {name: task.start for name, task in controller.tasks(2.0).items()}
+    assert controller.next_move("r1", 2.0) == ComeIn(1, at_home=True)
     assert isinstance(controller.claims("r1", "b", "c", 2.0), Waits)
-    controller.next_move("r1", 2.0)
-    controller.leads("r1")
-    controller.gives_up_claim("r1")
-    assert {name: task.start for name, task in controller.tasks(2.0).items()} == {
-        name: task.start for name, task in before.items()
-    }
+    assert controller.grants(2.0) == []
+    assert controller.leads("r1") == crossed_line(3).lane(1, 2)
+    assert {name: task.start for name, task in controller.tasks(2.0).items()} == before
+
+
+def test_of_robots_that_come_to_a_crossing_together_each_is_planned_for_when_it_is_its_turn() -> None:
+    controller = TrafficController(star(3, bays=3))
+    for robot, post in (("r1", 1), ("r3", 3), ("r5", 5)):
+        controller.joins(robot, post=f"p{post}", home=f"p{post}", at_home=False, now_s=0.0, towards=["p0"])
+    ends_s = sorted(task.start.arrives_s for task in controller.tasks(0.0).values())
+    assert all(later - sooner >= 5.0 for sooner, later in pairwise(ends_s))
+    assert ends_s[0] == 100.0
+    assert controller.give("r3", [Goal(6, 5.0, key="three")], 0.0, rounds=0)
 
 
 def test_a_robot_makes_room_by_its_own_report_alone() -> None:
@@ -192,6 +203,16 @@ def test_who_is_behind_another_in_a_corridor_is_not_let_over_before_it() -> None
     assert isinstance(answer, Waits)
     assert answer.robots == ("ahead",)
     assert controller.comes_in("ahead", "b", 501.0) == LetIn(1, at_home=False)
+
+
+def test_who_follows_one_that_had_to_wait_before_a_crossing_is_expected_behind_it() -> None:
+    network = star(3, bays=3)
+    controller = TrafficController(replace(network, lanes=followed(network)))
+    for robot, post, now_s in (("first", 3, 0.0), ("ahead", 1, 1.0), ("behind", 1, 1.0)):
+        controller.joins(robot, post=f"p{post}", home=None, at_home=False, now_s=now_s, towards=["p0"])
+    ends_s = {robot: task.start.arrives_s for robot, task in controller.tasks(2.0).items()}
+    assert ends_s["ahead"] > ends_s["first"] + 5.0
+    assert ends_s["behind"] >= ends_s["ahead"] + 20.0
 
 
 def followed(network: Network) -> tuple[tuple, ...]:  # type: ignore[type-arg]
@@ -301,3 +322,10 @@ def test_a_bay_that_is_left_is_taken_until_the_crossing_is_over_also_in_a_plan()
 
     assert said(105.1) == []
     assert said(104.0) == ["comes finds no bay at p0 at 104.0 s"]
+
+
+def test_a_robot_without_work_comes_in_where_its_corridor_ends() -> None:
+    controller = TrafficController(star(3))
+    controller.joins("r1", post="p1", home=None, at_home=False, now_s=0.0, towards=["p0"])
+    assert controller.next_move("r1", 99.0) == ComeIn(0, at_home=False)
+    assert controller.leads("r1") is None

@@ -6,10 +6,13 @@ from benchmarks.fleet.every_map import look_at
 from benchmarks.fleet.small_maps import AT_HOME, Fleet, connected_maps, network_on
 
 
+@pytest.mark.parametrize("crossing_s", [0.0, 3.0])
 @pytest.mark.parametrize(("posts", "every_goal", "places"), [(2, True, 426), (3, False, 3360), (4, False, 30418)])
 @pytest.mark.nightly
-def test_from_everywhere_robots_come_home_and_take_on_more(posts: int, every_goal: bool, places: int) -> None:
-    seen = look_at(posts, every_goal=every_goal)
+def test_from_everywhere_robots_come_home_and_take_on_more(
+    posts: int, every_goal: bool, places: int, crossing_s: float
+) -> None:
+    seen = look_at(posts, every_goal=every_goal, crossing_s=crossing_s)
     assert (seen.stuck, seen.invalid, seen.refused) == (0, 0, 0)
     assert seen.goals >= seen.places == places
 

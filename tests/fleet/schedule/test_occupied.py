@@ -1,5 +1,6 @@
 """Free times between reservations, checked moment by moment."""
 
+from dataclasses import replace
 from math import inf
 from random import Random
 
@@ -81,3 +82,18 @@ def test_a_robot_that_is_there_already_has_its_corridor_and_its_bay() -> None:
     assert taken.entries(network.lanes[1][0])[-1] == (10.0 + CLEARANCE_S, inf)
     assert within(taken.free(1), 15.0 + CLEARANCE_S, inf)
     assert not within(taken.free(1), 15.0, 20.0)
+
+
+def test_a_move_over_a_crossing_takes_it_and_the_bay_that_is_left_until_it_is_over() -> None:
+    network = replace(two_posts(None), bays=(1, 1), crossing_s=(2.0, 2.0))
+    taken, lane = Occupied(network), network.lanes[0][0]
+    stays = Leg(None, 0.0, -inf, 0, False, 0, 10.0)
+    drives = Leg(lane, 10.0, 18.0, 1, True, 0, 20.0, 2.0)
+    taken.put("r0", (stays, drives))
+    assert taken.begins(0) == [(-inf, pytest.approx(7.5, abs=1e-3)), (12.5, inf)]
+    assert taken.begins(1) == [(-inf, pytest.approx(15.5, abs=1e-3)), (20.5, inf)]
+    assert within(taken.free(0), 12.5, inf)
+    assert not within(taken.free(0), 12.0, 13.0)
+    assert taken.entries(network.lanes[1][0]) == [(-inf, pytest.approx(1.5, abs=1e-3)), (18.5, inf)]
+    shut = Occupied(replace(network, shut=frozenset({0})))
+    assert (shut.begins(0), shut.begins(1)) == ([], [(-inf, inf)])

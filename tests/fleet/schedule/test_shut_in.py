@@ -6,6 +6,7 @@ from random import Random
 import pytest
 
 from fleet.schedule.controller import ComeIn, Granted, LetIn, TrafficController, Waits
+from fleet.schedule.evacuation import evacuate
 from fleet.schedule.journey import Goal, Start, Task
 from fleet.schedule.network import Lane, Network
 from fleet.schedule.planning import plan_what_can_be
@@ -49,14 +50,17 @@ def at(post: int, home: int | None) -> Task:
 
 
 def test_as_many_come_home_as_can_however_many_cannot() -> None:
-    """On a line of single bays the two in the middle want to pass each other, which they cannot."""
-    network = replace(line(6), crossing_s=(5.0,) * 6)
-    tasks = {"r0": at(0, 0), "west": at(2, 5), "east": at(3, 0), "r5": at(5, 5)}
+    """On one part of a line of single bays two want to pass each other between two that stay: they cannot. On the other
+    one that stays makes way for one that can come home, and another comes home when that has gone."""
+    network = replace(line(8), crossing_s=(5.0,) * 8).without({"d-e"})
+    tasks = {"a": at(0, None), "b": at(1, 3), "c": at(2, 0), "d": at(3, None)}
+    tasks |= {"e": at(4, 7), "f": at(5, None), "h": at(7, 7)}
     schedule, planned = plan_what_can_be(network, tasks, Random(0))
     assert problems(network, planned, schedule.journeys) == []
-    assert {robot for robot, task in planned.items() if task.home is None} < {"west", "east"}
-    assert schedule.journeys["r0"].legs[-1].at_home
-    assert schedule.journeys["r5"].legs[-1].at_home
+    assert {robot for robot, task in planned.items() if task.home is None} == {"a", "b", "c", "d", "f"}
+    assert [len(schedule.journeys[robot].legs) for robot in "abcd"] == [1, 1, 1, 1], "they stay where they stand"
+    assert schedule.journeys["e"].legs[-1].at_home
+    assert schedule.journeys["h"].legs[-1].at_home
 
 
 def test_who_stays_and_who_goes_is_the_same_each_time() -> None:
@@ -114,3 +118,45 @@ def test_a_robot_that_is_dead_at_the_end_of_its_corridor_shuts_the_crossing_only
     assert controller.network.shut == ({1} if is_let_in else frozenset())
     assert controller.give("r1", [Goal(1, 5.0, key="one")], 11.0)
     assert (controller.out_of_reach() == {"r1"}) == is_let_in
+
+
+def test_what_was_asked_at_one_end_of_a_corridor_is_not_granted_at_the_other() -> None:
+    controller = TrafficController(replace(line(3, 2), crossing_s=(5.0,) * 3))
+    controller.joins("dead", post="b", home="c", at_home=False, now_s=0.0, towards=["c"], on_crossing=True)
+    controller.joins("r1", post="a", home="c", at_home=False, now_s=0.0, towards=["b"])
+    assert isinstance(controller.comes_in("r1", "b", 5.0), Waits)
+    controller.freeze("dead", 10.0)
+    assert controller.grants(11.0) == [], "it does not know yet that it is to turn round"
+    assert controller.comes_in("r1", "a", 20.0) == LetIn(0, at_home=False)
+
+
+def test_who_has_turned_round_comes_in_before_it_goes_anywhere_else() -> None:
+    controller = TrafficController(replace(line(4, 2), crossing_s=(5.0,) * 4))
+    controller.joins("dead", post="c", home="d", at_home=False, now_s=0.0, towards=["d"], on_crossing=True)
+    controller.joins("r1", post="b", home="a", at_home=False, now_s=0.0, towards=["c"])
+    controller.freeze("dead", 10.0)
+    assert controller.next_move("r1", 100.0) == ComeIn(1, at_home=False)
+    assert isinstance(controller.claims("r1", "b", "a", 101.0), Waits)
+    assert controller.comes_in("r1", "b", 102.0) == LetIn(1, at_home=False)
+    controller.cleared("r1", "c", "b", 103.0)
+    controller.crossed("r1", "b", 108.0)
+    assert isinstance(controller.claims("r1", "b", "a", 109.0), Granted)
+
+
+def test_one_that_is_shut_in_is_looked_at_again_when_another_has_moved() -> None:
+    controller = TrafficController(star(2))
+    controller.joins("dead", post="p0", home="p4", at_home=False, now_s=0.0, towards=["p3"], on_crossing=True)
+    controller.joins("r1", post="p1", home="p4", at_home=False, now_s=0.0, towards=["p0"])
+    controller.joins("r2", post="p1", home="p2", at_home=False, now_s=0.0)
+    controller.freeze("dead", 10.0)
+    assert controller.next_move("r1", 11.0) is None
+    assert isinstance(controller.claims("r2", "p1", "p2", 12.0), Granted)
+    assert controller.next_move("r1", 13.0) is None, "its bay is still its own"
+    controller.crossed("r2", "p1", 20.0)
+    assert controller.next_move("r1", 21.0) == ComeIn(1, at_home=False)
+
+
+def test_no_robot_is_brought_home_over_a_crossing_that_is_shut() -> None:
+    network = replace(line(2), crossing_s=(5.0, 5.0))
+    assert evacuate(network, {"r1": at(0, 0)}) is not None
+    assert evacuate(network.without((), shut={0}), {"r1": at(0, 0)}) is None
