@@ -2,14 +2,16 @@
 
 from dataclasses import replace
 from itertools import pairwise
+from random import Random
 
 from fleet.schedule.controller import ComeIn, GoOn, Granted, LetIn, TrafficController, Waits
-from fleet.schedule.execution import waits_to_cross
+from fleet.schedule.execution import retimed, waits_to_cross
 from fleet.schedule.journey import Goal, Journey, Leg, Start, Task, standing
 from fleet.schedule.network import Network
 from fleet.schedule.planning import Schedule, plan
 from fleet.schedule.validation import problems
 from tests.fleet.schedule.test_controller import line
+from tests.fleet.schedule.test_schedules import planned, random_network, random_tasks
 from tests.fleet.schedule.test_shut_in import star
 
 OVER_S = 10.0
@@ -329,3 +331,13 @@ def test_a_robot_without_work_comes_in_where_its_corridor_ends() -> None:
     controller.joins("r1", post="p1", home=None, at_home=False, now_s=0.0, towards=["p0"])
     assert controller.next_move("r1", 99.0) == ComeIn(0, at_home=False)
     assert controller.leads("r1") is None
+
+
+def test_whatever_is_planned_over_crossings_can_be_carried_out() -> None:
+    for seed in range(20):
+        rng = Random(seed)
+        network = random_network(rng, crossing=True, following=seed % 3 == 0)
+        tasks = random_tasks(rng, network, 5)
+        found = planned(rng, network, tasks)
+        assert problems(network, tasks, found.journeys) == [], seed
+        assert problems(network, tasks, retimed(network, tasks, found.journeys)) == [], seed
