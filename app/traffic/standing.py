@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from app.traffic.robot_locations import Hold, RobotLocation
-from maps import CampusMap
+from maps import CampusMap, corridor_name
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,11 @@ def _on_crossing(track: CampusMap, one: RobotLocation, post: str) -> Standing:
 
 
 def _in_corridor(track: CampusMap, one: RobotLocation, behind: str, ahead: str) -> Standing:
-    """Turned round, or where it was not granted, it comes to the other end all the same."""
+    """Turned round, or where it was not granted, it comes to the other end all the same. Out of what it was granted it
+    is on the crossing, and says so next."""
+    inside = corridor_name(behind, ahead)
+    if all(hold.corridor != inside for hold in one.holds) and any(hold.from_post == ahead for hold in one.holds):
+        return _on_crossing(track, one, ahead)
     towards = tuple(_chain(track, one, behind))
     if towards[:1] != (ahead,):
         towards = (ahead,)
