@@ -72,13 +72,15 @@ class BayTrafficSchedule(TrafficSchedule):
             return self._off_the_crossing(one, where, now_s)
         return None
 
-    def _out_of_bay(self, one: RobotLocation, where: Standing, now_s: float) -> Verdict:
+    def _out_of_bay(self, one: RobotLocation, where: Standing, now_s: float) -> Verdict | None:
         """Out of the bay, over the crossing, into the corridor; or to its own home at the same post."""
         assert one.request is not None and one.occupies is not None  # noqa: S101
         bay, post = one.occupies.place, where.post
         asked = next((leg for leg in one.request.legs if self._is_lane(leg)), None)
         if asked is None or asked[0] != post:
             return self._aside(one, bay, post, now_s, asked=True)
+        if one.goals and one.goals[0][1] == one.request.goal == post:
+            return None  # first it does here what it has to do
         answer = self.controller.claims(one.robot, *asked, now_s)
         if isinstance(answer, Denied) and answer.instead is not None:
             answer = self.controller.claims(one.robot, *self._names(answer.instead), now_s)

@@ -44,6 +44,22 @@ def verdicts(settings: Settings, *pictures: RobotLocation | tuple[RobotLocation,
     return found
 
 
+WAY: Final = "post4_bay1", "post4", "post3", "post2", "post1", "post1_bay1"
+
+
+def test_who_has_something_to_do_where_it_stands_keeps_no_corridor_from_others_meanwhile(settings: Settings) -> None:
+    busy = asks(GUEST, "post4", *WAY)
+    done = replace(asks(GUEST, "post1", *WAY), goals=GUEST.goals[1:])
+    assert verdicts(settings, busy) == []
+    assert verdicts(settings, busy, done) == [MayEnter("r1", (WAY[:2], WAY[1:3]))]
+
+
+def test_who_goes_home_from_another_bay_of_its_post_is_let_in(settings: Settings) -> None:
+    at_home_post = replace(GUEST, post="post5", occupies=Occupied("bay", "post5_bay1"), goals=(("own", "post5"),))
+    home = "post5_bay1", "post5", "post5_bay2"
+    assert verdicts(settings, asks(at_home_post, "post5", *home)) == [MayEnter("r1", (home[:2], home[1:]))]
+
+
 def test_who_has_left_its_corridor_is_on_the_crossing_also_before_it_says_so(settings: Settings) -> None:
     """A robot that drives through says first that it is out of the corridor, and then where it is. Ways are long, so
     that the other one would be let out before a robot that had just come in."""
