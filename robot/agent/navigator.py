@@ -183,6 +183,11 @@ class Navigator(Tracker):
         return self.at if self.at and self.campus.bays_of(self.at) else None
 
     @property
+    def asks_ahead_later(self) -> bool:
+        """Return whether it stands at a post with bays: for what comes after its next corridor it asks in there."""
+        return self.at is not None and bool(self.campus.bays_of(self.campus.address_of(self.at)))
+
+    @property
     def comes_out_of_a_bay(self) -> bool:
         """Return whether it stands at a post that it came to from one of its bays: it has not come from elsewhere."""
         place = self._place

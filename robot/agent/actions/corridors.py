@@ -55,7 +55,8 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
     if closed:
         missions.claims.avoid = frozenset()  # what was denied may be open by the next time it asks
         return AtOnce(Ended(closed))
-    claim_id = None if detour(hands) else missions.claims.ask((*first, *way), goal)
+    asks = not (detour(hands) or (navigator.asks_ahead_later and missions.claims.may_enter(first)))
+    claim_id = missions.claims.ask((*first, *way), goal) if asks else None
     asked_s = hands.view.at_s
 
     def ask() -> Ended | None:

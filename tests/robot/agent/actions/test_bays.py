@@ -61,6 +61,16 @@ def test_out_of_a_bay_it_goes_only_together_with_what_comes_after_the_crossing(b
     assert [failure for _, failure in bay_bench.actions.finished(0.0)] == [None]
 
 
+def test_on_a_crossing_it_asks_for_nothing_beyond_the_corridor_that_it_may_enter(bay_bench: Bench) -> None:
+    """What it asked for here would be kept from others for as long as it takes through the corridor."""
+    bay_bench.navigator.place("post3", "post4")
+    bay_bench.missions.memory.grant((leg("post3", "post4"),))
+    bay_bench.missions._changed()
+    bay_bench.ask("claim(post4)")
+    assert [failure for _, failure in bay_bench.actions.finished(0.0)] == [None]
+    assert claims(bay_bench) == []
+
+
 def test_on_its_way_it_asks_once_for_what_comes_after_the_crossing_ahead(bay_bench: Bench) -> None:
     in_corridor(bay_bench, "post2", "post3")
     bay_bench.navigator.destination = "post4"
