@@ -1,10 +1,10 @@
 """Homes: each dock or bay is the home of one robot, since no robot sees that another stands in it.
 
-On a map with bays the service gives them: a robot keeps the one that it has, gets the one that it names if that is
-free, or the first that is free; where none is left it is refused with the reason. A robot that is older than that, and
-every robot on a map without bays, names its home itself. It belongs to the robot that named it first: another one is
-refused, and the alarm `same_home` rings until it names another (decision 0088). A robot with work under way is let in
-to finish it, and gets no new orders.
+On a map with bays the service gives them: a robot keeps the one that it has, or gets the one that it names or stands
+in, if that is free, or the first that is free; where none is left it is refused with the reason. A robot that is older
+than that, and every robot on a map without bays, names its home itself. It belongs to the robot that named it first:
+another one is refused, and the alarm `same_home` rings until it names another (decision 0088). A robot with work under
+way is let in to finish it, and gets no new orders.
 """
 
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ async def check_home(
 ) -> SameHome | NoHomeLeft | None:
     """Return why this robot is not let in, if so. It is returned, not raised, so that the alarm is committed."""
     if campus.track.home_bays and GIVEN in hello.understands:
-        given = await free_home(session, campus, robot.name, (robot.home_bay, hello.home))
+        given = await free_home(session, campus, robot.name, _wanted(robot, hello))
         refusal = _no_home_left(campus) if given is None else None
         return None if refusal and await _is_at_work(session, robot.name, hello) else refusal
     owner = await _owner(session, campus, robot.name, hello.home)
@@ -56,11 +56,16 @@ async def note_home(session: AsyncSession, campus: CampusMap, robot: RobotRow, h
     """Write down its home; return it if the service gives it. Its post is at home for everybody but the traffic."""
     given = None
     if campus.track.home_bays and GIVEN in hello.understands:
-        given = await free_home(session, campus, robot.name, (robot.home_bay, hello.home))
+        given = await free_home(session, campus, robot.name, _wanted(robot, hello))
     home = given or hello.home
     robot.home = home and campus.address_of(home)
     robot.home_bay = home if home != robot.home else None
     return given
+
+
+def _wanted(robot: RobotRow, hello: Hello) -> tuple[str | None, ...]:
+    """The home that it has, the one that it names, and the bay in which it stands, if it can be one."""
+    return robot.home_bay, hello.home, hello.position.post
 
 
 async def free_home(session: AsyncSession, campus: CampusMap, robot: str, wanted: Sequence[str | None]) -> str | None:

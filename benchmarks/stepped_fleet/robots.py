@@ -76,7 +76,8 @@ class SteppedRobot:
     def switch_on(self) -> None:
         """Assemble the daemon; after a kill on the disk and in the place that the last one left."""
         pose = self._put_away()
-        settings = load_settings(None, {"name": self.name, "data": self.data, **SETTINGS})
+        home = self.start.removeprefix("dock:")
+        settings = load_settings(None, {"name": self.name, "home": home, "data": self.data, **SETTINGS})
         motion = Motion(wheel_error=WHEEL_ERROR)
         simulation = Simulation(self.start, 0.95, self.seed, in_memory=True, world=self.world, motion=motion)
         self.parts = parts = assemble(settings, self.clock, simulation)

@@ -154,8 +154,11 @@ def _make_folder(path: Path) -> None:
 
 
 def _home(settings: Settings, campus: CampusMap) -> str | None:
-    """The place on the track where it rests: a bay, or a post that has a dock."""
+    """The place on the track where it rests: a bay, or a post that has a dock. On a map with bays the service gives
+    it."""
     home, track = campus.track.home_at(settings.home), campus.track
+    if settings.home is None and settings.server and track.home_bays:
+        return None
     if home is None and settings.home is not None:
         if settings.home not in track.posts:
             posts = ", ".join(campus.posts)

@@ -137,6 +137,13 @@ async def test_a_robot_gets_the_home_that_it_names_if_that_is_free(service: Serv
     assert await given_home(service, takes_its_home(2, clock), home="post4_bay2") == "post5_bay2"
 
 
+async def test_a_robot_that_names_none_gets_the_one_in_which_it_stands(service: Service, clock: SteppedClock) -> None:
+    robot = takes_its_home(1, clock)
+    robot.token = await service.enrol(robot.name)
+    async with robot.connected(service.url, robot.token):
+        assert (await robot.greet("post4_bay2", understands=("home",))).home == "post4_bay2"
+
+
 async def test_more_robots_than_homes_are_refused_with_the_reason(service: Service, clock: SteppedClock) -> None:
     for number in (1, 2, 3):
         await given_home(service, takes_its_home(number, clock))
