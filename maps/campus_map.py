@@ -170,8 +170,12 @@ class CampusMap:
         """On a track: the home of that name or at that post; without a name the first dock of the map. None: none."""
         if name is None:
             return next((place.name for place in self.docks()), None)
-        homes = (place for place in self.posts.values() if place.dock or (place.homes and place.bay_of))
-        return next((place.name for place in homes if name in (place.name, place.bay_of)), None)
+        return next((place.name for place in self.homes if name in (place.name, place.bay_of)), None)
+
+    @property
+    def homes(self) -> tuple[Post, ...]:
+        """On a track: where robots can be at home: in docks, and in bays that are homes."""
+        return tuple(place for place in self.posts.values() if place.dock or (place.homes and place.bay_of))
 
     @property
     def home_bays(self) -> tuple[Post, ...]:

@@ -8,12 +8,13 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 from statistics import mean
 from typing import Any
 
 from benchmarks.body.tracks import Stepped
 from maps import CampusMap, Point, builtin_map
-from maps.campus_map import build_map, builtin_path
+from maps.campus_map import build_map, map_path
 from maps.geometry import distance_to_path_m, heading_rad, moved
 from maps.map_file import load_map_file
 from maps.scaling import fitting_factor, scaled
@@ -41,8 +42,8 @@ class Crossing:
 
 
 def measure_turns(seed: int) -> dict[str, Any]:
-    """On both maps; the tunnels with corridors of 3 to 10 m."""
-    campuses = (builtin_map("test_track"), small_map("carleton"))
+    """On the tracks of both maps, bays included; the tunnels with corridors of 3 to 10 m."""
+    campuses = (builtin_map("test_track").track, small_map("carleton").track)
     return {campus.name: _figures([cross(campus, *turn, seed) for turn in triples(campus)]) for campus in campuses}
 
 
@@ -58,9 +59,9 @@ def _figures(crossings: Sequence[Crossing]) -> dict[str, Any]:
     }
 
 
-def small_map(name: str, shortest_m: float = 3.0, longest_m: float = 10.0) -> CampusMap:
-    """A built-in map with corridors of so many metres."""
-    file = load_map_file(builtin_path(name))
+def small_map(name: Path | str, shortest_m: float = 3.0, longest_m: float = 10.0) -> CampusMap:
+    """A map with corridors of so many metres."""
+    file = load_map_file(map_path(name))
     return build_map(scaled(file, fitting_factor(file, shortest_m, longest_m)))
 
 

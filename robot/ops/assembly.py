@@ -163,8 +163,8 @@ def _home(settings: Settings, campus: CampusMap) -> str | None:
         if settings.home not in track.posts:
             posts = ", ".join(campus.posts)
             raise ConfigError("settings", "home", f"map {campus.name} has no post {settings.home}", f"Posts: {posts}.")
-        docks = ", ".join(place.name for place in track.docks()) or "none"
-        raise ConfigError("settings", "home", f"{settings.home} has no dock on map {campus.name}", f"Docks: {docks}.")
+        homes = ", ".join(place.name for place in track.homes) or "none"
+        raise ConfigError("settings", "home", f"{settings.home} is no home on map {campus.name}", f"Homes: {homes}.")
     return home
 
 

@@ -100,8 +100,8 @@ def _robots(scenario: Scenario, campus: CampusMap) -> Iterator[Complaint]:
         except SimulatedWorldError as error:
             yield "robot.start", str(error), ""
         if robot.home is not None and campus.track.home_at(robot.home) is None:
-            docks = ", ".join(post.name for post in campus.docks()) or "none"
-            yield "robot.home", f"{robot.home} is no post with a dock", f"There are: {docks}."
+            homes = ", ".join(place.name for place in campus.track.homes) or "none"
+            yield "robot.home", f"{robot.home} is no home on this map", f"There are: {homes}."
 
 
 def _orders(scenario: Scenario, campus: CampusMap, robots: set[str]) -> Iterator[Complaint]:

@@ -26,6 +26,7 @@ from app.orders.transitions import By
 from protocol.clock import SteppedClock
 from tests.app.compiled_once import compile_once
 from tests.app.postgresql import TEMPLATE, PostgreSQL
+from tests.plain_maps import PLAIN_TRACK
 
 compile_once()
 
@@ -105,6 +106,7 @@ def settings(tmp_path: Path, pages: Path, database_url: str, sqlite_at_head: Pat
         shutil.copy(sqlite_at_head, data)
     return Settings(
         data=data,
+        map=str(PLAIN_TRACK),
         pages=pages,
         public_url="https://mail.campus.example",
         time_zone="",

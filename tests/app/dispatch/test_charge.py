@@ -6,10 +6,10 @@ from typing import Any
 from app.core.settings import Settings
 from app.dispatch.charge_limits import Charges
 from app.dispatch.choice import Assignment, IdleRobot, WaitingOrder, choose_robots, lacks_charge
-from maps import builtin_map
 from maps.ways import Ways
+from tests.plain_maps import plain_map
 
-WAYS = Ways(builtin_map("carleton"))
+WAYS = Ways(plain_map("carleton"))
 CHARGES = Charges(WAYS, Settings())
 SHORT = WaitingOrder("short", "canal", "nicol")
 LONG = WaitingOrder("long", "loeb", "robertson")

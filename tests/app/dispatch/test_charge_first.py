@@ -8,15 +8,16 @@ import pytest
 from app.charging.charge_first import REASON
 from app.core.settings import Settings
 from app.models import ClaimRow, StopRow
-from maps import builtin_map, shortest_route
+from maps import shortest_route
 from protocol.clock import SteppedClock
 from protocol.envelope import YOUNGER
 from protocol.parts import Activity, Battery, Leg, Position, Stop, StopAction
 from protocol.to_robot import Grant, Mission
 from protocol.to_server import Claim, Clear, Snapshot, Step
 from tests.app.robots.playing import PlayedRobot, Service, serving
+from tests.plain_maps import plain_map
 
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 
 
 @pytest.fixture

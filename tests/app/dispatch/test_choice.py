@@ -18,11 +18,12 @@ from app.dispatch.choice import (
 )
 from app.dispatch.waiting_work import counts_since
 from app.models import Priority
-from maps import builtin_map, shortest_route
+from maps import shortest_route
 from maps.ways import Ways
+from tests.plain_maps import plain_map
 
-TRACK = Ways(builtin_map("test_track"))
-MAP = builtin_map("carleton")
+TRACK = Ways(plain_map("test_track"))
+MAP = plain_map("carleton")
 CARLETON = Ways(MAP)
 
 

@@ -12,13 +12,14 @@ from app.models import Order, Person, RobotRow
 from app.traffic.schedule import network_for
 from fleet.eta.arrivals import ENOUGH, Estimates
 from fleet.eta.durations import Kind, Thing
-from maps import builtin_map, shortest_route
+from maps import shortest_route
 from maps.ways import Ways
 from protocol.clock import Clock, SteppedClock
 from protocol.parts import Activity, Battery, Position
 from protocol.to_robot import Mission
 from protocol.to_server import Snapshot, Step, Why
 from tests.app.robots.playing import PlayedRobot, Service, until
+from tests.plain_maps import plain_map
 
 CORRIDOR_S, HANDOVER_S = 40.0, 30.0
 NOW = datetime(2026, 1, 5, 12, tzinfo=UTC)
@@ -174,7 +175,7 @@ async def view(service: Service, order_id: str) -> dict[str, Any]:
 
 
 def test_the_schedule_counts_with_what_corridors_take_and_with_their_lengths_until_that_is_known() -> None:
-    settings, campus = Settings(), builtin_map("test_track")
+    settings, campus = Settings(), plain_map("test_track")
     estimates = Estimates(Ways(campus), settings.assumed_speed_m_s, settings.assumed_handover_s)
     assert network_for(campus, settings, estimates).lanes == network_for(campus, settings).lanes
     teach(estimates, NOW)

@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from app.dispatch.at_once.missions import best_tour
 from app.dispatch.choice import WaitingOrder
 from app.dispatch.insertion import Tour, Visit, cheapest_insertion
-from maps import builtin_map
 from maps.ways import Ways
+from tests.plain_maps import plain_map
 
-MAP = builtin_map("carleton")
+MAP = plain_map("carleton")
 WAYS = Ways(MAP)
-TRACK = Ways(builtin_map("test_track"))
+TRACK = Ways(plain_map("test_track"))
 LOAD, RECEIVE = Visit("load", "post2", 1), Visit("receive", "post3", -1)
 
 

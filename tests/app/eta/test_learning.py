@@ -16,7 +16,7 @@ from fleet.eta.arrivals import ENOUGH, Ahead, Estimates
 from fleet.eta.calibration import Basis
 from fleet.eta.durations import Kind, Thing
 from fleet.eta.intervals import Interval
-from maps import builtin_map, shortest_route
+from maps import shortest_route
 from maps.ways import Ways
 from protocol.clock import SteppedClock
 from protocol.parts import Leg, Stop
@@ -24,8 +24,9 @@ from protocol.to_robot import Mission
 from protocol.to_server import Step
 from tests.app.conftest import HERE, SENDER, Browser, Mailroom
 from tests.app.robots.playing import PlayedRobot, Service, serving
+from tests.plain_maps import plain_map
 
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 FROM, TO = "post1", "post4"
 NOWHERE = Thing(Kind.CORRIDOR, "nowhere", 1.0)
 CORRIDOR_S, HANDED_OVER_S = 40.0, 25.0

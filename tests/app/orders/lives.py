@@ -38,7 +38,7 @@ from app.robots.service import Fleet, enrol
 from app.traffic.service import TrafficService
 from fleet.assignment.deciding import Decision
 from fleet.assignment.improving import improved
-from maps import CampusMap, builtin_map
+from maps import CampusMap
 from maps.ways import Ways
 from protocol.both_ways import Error
 from protocol.clock import SteppedClock
@@ -52,8 +52,9 @@ from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.store import Store
 from tests.app.placed import placed
+from tests.plain_maps import PLAIN_TRACK, plain_map
 
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 WAYS = Ways(TRACK)
 DRIVES_M_S = 0.2
 """As fast as our robots are let drive."""
@@ -148,7 +149,7 @@ class World:
         self.folder, self.campus = folder, campus
         folder.mkdir(parents=True)
         shutil.copy(template, folder / "campus-mail.sqlite")
-        self.settings = Settings(data=folder, time_zone="UTC", **settings)
+        self.settings = Settings(data=folder, map=str(PLAIN_TRACK), time_zone="UTC", **settings)
         self.clock = SteppedClock()
         self.where: dict[str, str] = {}
         """Where the mail of each order really is: sender, recipient, mailroom, or a robot's name."""

@@ -24,7 +24,6 @@ from app.models import Order, OrderEvent
 from app.orders.views.schemas import NewOrder
 from app.robots.link.keepalive import AttentiveSocket
 from app.robots.service import enrol
-from maps import builtin_map
 from maps.ways import Ways
 from protocol.clock import Clock, SteppedClock
 from protocol.envelope import DURABLE, TO_ROBOT, Envelope, parse, type_of
@@ -33,8 +32,9 @@ from protocol.proofs import ShownCode
 from protocol.to_robot import Mission, Verifiers, Welcome
 from protocol.to_server import Event, HandoverReceipt, Hello, Progress, Step
 from tests.app.placed import placed
+from tests.plain_maps import plain_map
 
-WAYS = Ways(builtin_map("test_track"))
+WAYS = Ways(plain_map("test_track"))
 DRIVES_M_S = 0.2
 """As fast as our robots are let drive."""
 WITHIN_S = 30.0

@@ -5,7 +5,7 @@ from dataclasses import replace
 from app.core.settings import Settings
 from app.traffic.robot_locations import ReservationRequest, RobotLocation, TrafficSnapshot
 from app.traffic.schedule import HasToWait, MayEnter, TrafficSchedule
-from maps import builtin_map
+from tests.plain_maps import plain_map
 
 WAY = (("post1", "post2"), ("post2", "post3"), ("post3", "post4"))
 LOADS, GIVES = ("load", "post1"), ("give", "post4")
@@ -25,7 +25,7 @@ ASKS_WHILE_IT_COMES = RobotLocation(
 
 
 def test_what_is_asked_for_after_a_stop_is_granted_after_it_as_far_as_the_next(settings: Settings) -> None:
-    schedule = TrafficSchedule(builtin_map("test_track"), settings)
+    schedule = TrafficSchedule(plain_map("test_track"), settings)
     schedule.follow(TrafficSnapshot({"r1": ASKS_WHILE_IT_COMES}, frozenset()), {}, 0.0)
     assert list(schedule.verdicts({}, 0.0)) == []
     loaded = replace(ASKS_WHILE_IT_COMES, goals=(GIVES,))
@@ -36,7 +36,7 @@ def test_what_is_asked_for_after_a_stop_is_granted_after_it_as_far_as_the_next(s
 
 def test_a_robot_asks_from_where_it_stands_wherever_it_was_seen_last(settings: Settings) -> None:
     """A schedule that is made anew has not heard on which way it came here."""
-    schedule = TrafficSchedule(builtin_map("test_track"), settings)
+    schedule = TrafficSchedule(plain_map("test_track"), settings)
     asks = replace(
         ASKS_WHILE_IT_COMES, post="post5", goals=(GIVES,), request=ReservationRequest("c1", WAY[:1], "post4", WAY[1:])
     )
@@ -45,7 +45,7 @@ def test_a_robot_asks_from_where_it_stands_wherever_it_was_seen_last(settings: S
 
 
 def test_a_robot_that_was_silent_and_asks_again_in_the_same_look_is_let_in(settings: Settings) -> None:
-    schedule = TrafficSchedule(builtin_map("test_track"), settings, vanished=frozenset({"r1"}))
+    schedule = TrafficSchedule(plain_map("test_track"), settings, vanished=frozenset({"r1"}))
     silent = replace(ASKS_WHILE_IT_COMES, request=None, goals=(), online=False)
     schedule.follow(TrafficSnapshot({"r1": silent}, frozenset()), {}, 0.0)
     schedule.vanished = frozenset()
@@ -56,7 +56,7 @@ def test_a_robot_that_was_silent_and_asks_again_in_the_same_look_is_let_in(setti
 
 def test_what_a_robot_may_enter_besides_is_no_other_robots_in_the_same_look(settings: Settings) -> None:
     """It does not know which way it looks, so all that leads away from where it stands is its own."""
-    schedule = TrafficSchedule(builtin_map("test_track"), settings)
+    schedule = TrafficSchedule(plain_map("test_track"), settings)
     first = (("post3", "post2"), ("post3", "post4"), ("post3", "post5"))
     lost = replace(ASKS_WHILE_IT_COMES, post="post3", goals=(LOADS,), request=ReservationRequest("c1", first, "post1"))
     other = replace(

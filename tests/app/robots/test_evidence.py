@@ -6,10 +6,10 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from app.robots.progress.evidence import FASTEST_M_S, TOLD_AT_ONCE_S, Sighting, is_out_of_reach
-from maps import builtin_map
 from maps.ways import Ways
+from tests.plain_maps import plain_map
 
-WAYS = Ways(builtin_map("carleton"))
+WAYS = Ways(plain_map("carleton"))
 NOON = datetime(2026, 1, 5, 12, tzinfo=UTC)
 FAR = max(
     ((a, b) for a in WAYS.campus.posts for b in WAYS.campus.posts if a < b), key=lambda pair: WAYS.length_m(*pair)

@@ -9,13 +9,14 @@ from maps.ways import Ways
 from protocol.clock import SteppedClock
 from protocol.to_server import Step
 from tests.app.robots.playing import PlayedRobot, Service
+from tests.plain_maps import PLAIN_TUNNELS
 
 FAR, NEARER, NEXT_TO_IT, SENDERS = "loeb", "uc", "frontenac", "commons"
 
 
 @pytest.fixture
 def settings(settings: Settings) -> Settings:
-    return settings.model_copy(update={"map": "carleton"})
+    return settings.model_copy(update={"map": str(PLAIN_TUNNELS)})
 
 
 async def kinds(service: Service) -> list[str]:

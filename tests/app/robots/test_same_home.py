@@ -14,6 +14,7 @@ from protocol.clock import SteppedClock
 from protocol.parts import Leg
 from protocol.to_server import Claim, Step
 from tests.app.robots.playing import PlayedRobot, Service, serving, until
+from tests.plain_maps import PLAIN_TUNNELS
 
 TWO_DOCKS = "uc", "canal"
 """Of the map; at azrieli there is none."""
@@ -24,7 +25,7 @@ LEG = Leg(from_post="uc", to_post="azrieli")
 @pytest.fixture(params=["schedule", "at_once"])
 async def service(request: pytest.FixtureRequest, settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
     """In the tunnels, which have several docks, with either rule of who fetches what."""
-    more = {"map": "carleton", "traffic": request.param}
+    more = {"map": str(PLAIN_TUNNELS), "traffic": request.param}
     async with serving(settings.model_copy(update=more), clock) as service:
         yield service
 

@@ -6,15 +6,16 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from maps import builtin_map, corridor_name, shortest_route
+from maps import corridor_name, shortest_route
 from protocol.clock import SteppedClock
 from protocol.envelope import TO_ROBOT, parse
 from protocol.parts import Leg, Received
 from protocol.to_robot import Detour, Grant
 from protocol.to_server import Claim, Clear
 from tests.app.robots.playing import PlayedRobot, Service
+from tests.plain_maps import plain_map
 
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 UNDERSTANDS = ("confirm", "watch", "open_way", "detour")
 
 

@@ -8,8 +8,8 @@ from random import Random
 import pytest
 
 from app.core.settings import Settings
-from maps import builtin_map
 from tests.app.robots.messages_world import World
+from tests.plain_maps import plain_map
 
 LIVES = 12
 STEPS, TROUBLE = 120, 0.25
@@ -22,7 +22,7 @@ COME_HOME_WITHIN = 5000
 @pytest.mark.nightly
 def test_no_two_robots_meet_and_all_come_home(settings: Settings, campus: str, seed: int) -> None:
     rng = Random(f"{campus} {seed}")
-    world = World(builtin_map(campus), settings, rng, robots=rng.randint(2, 4))
+    world = World(plain_map(campus), settings, rng, robots=rng.randint(2, 4))
     for _ in world.steps(STEPS):
         if rng.random() < TROUBLE:
             world.trouble()

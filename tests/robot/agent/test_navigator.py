@@ -6,7 +6,7 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from maps import CampusMap, builtin_map
+from maps import CampusMap
 from protocol.envelope import Envelope
 from protocol.parts import Leg
 from protocol.to_robot import Detour
@@ -19,9 +19,10 @@ from robot.mission.memory import Memory
 from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.store import Store
+from tests.plain_maps import plain_map
 from tests.robot.fake_body import FakeBody
 
-CAMPUS = builtin_map("test_track")
+CAMPUS = plain_map("test_track")
 
 
 class Walk:
@@ -105,7 +106,7 @@ def test_what_lies_behind_is_reached_by_half_a_turn_to_the_side_that_was_asked(w
 
 
 def test_who_is_sent_aside_to_where_it_goes_anyway_takes_the_corridor_that_it_was_granted(store: Store) -> None:
-    walk = Walk(store, home="uc", campus=builtin_map("carleton"))
+    walk = Walk(store, home="uc", campus=plain_map("carleton"))
     walk.look()
     walk.navigator.place("uc", "azrieli")
     walk.drives_to("azrieli")
@@ -125,7 +126,7 @@ def test_who_is_sent_aside_to_where_it_goes_anyway_takes_the_corridor_that_it_wa
 
 
 def test_who_knows_the_corridor_to_be_closed_into_which_it_is_sent_keeps_to_its_own_way() -> None:
-    campus, aside = builtin_map("carleton"), Leg(from_post="azrieli", to_post="library")
+    campus, aside = plain_map("carleton"), Leg(from_post="azrieli", to_post="library")
     assert kept_from(campus, aside, "azrieli", "library", frozenset()) == {"azrieli-junction", "azrieli-uc"}
     closed = frozenset({"azrieli-library"})
     assert kept_from(campus, aside, "azrieli", "library", closed) == closed

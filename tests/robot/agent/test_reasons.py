@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from maps import builtin_map
 from protocol.parts import Purpose, Stop, StopAction
 from protocol.to_robot import Mission
 from robot.agent.navigator import Navigator
@@ -19,6 +18,7 @@ from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.store import Store
 from robot.skills.interfaces import View
+from tests.plain_maps import plain_map
 
 MISSION = Mission(id="m1", update=1, stops=(Stop(id="s1", post="post1", action=StopAction.LOAD, order_id="o1"),))
 
@@ -37,7 +37,7 @@ class Robot:
 def robot(tmp_path: Path) -> Iterator[Robot]:
     store = Store(tmp_path / "robot.db")
     missions = MissionManager(store, Memory(store), Outbox(store), lambda: datetime(2026, 1, 5, tzinfo=UTC))
-    navigator = Navigator(builtin_map("test_track"), "post5", missions, now=0.0)
+    navigator = Navigator(plain_map("test_track"), "post5", missions, now=0.0)
     navigator.place("post3", "post4")
     yield Robot(missions, navigator)
     store.close()

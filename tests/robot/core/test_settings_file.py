@@ -41,7 +41,7 @@ def test_a_right_file_is_called_right(tmp_path: Path) -> None:
     ("text", "named"),
     [
         ("battry = 1\n", "'battery"),
-        ('home = "post1"\n', "post1 has no dock"),
+        ('home = "post2"\n', "post2 is no home"),
         ('map = "moon"\n', "test_track"),
         ('server = "wss://mail.campus.example/link"\n', "token_file"),
         ('[mind]\nprogram = "absent.asl"\n', "mind.program"),

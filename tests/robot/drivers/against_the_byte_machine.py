@@ -2,11 +2,11 @@
 
 from collections.abc import Callable
 
-from maps import builtin_map
 from robot.drivers.create2.create2 import Create2
 from robot.drivers.create2.wake_up import NoWakeUpLine, WakeUpLine
 from robot.drivers.interfaces import BaseState, Mode, WheelSpeeds
 from robot.simulated import SimulatedRobot
+from tests.plain_maps import plain_map
 
 TICK_S = 0.02
 AHEAD = WheelSpeeds(100, 100)
@@ -16,7 +16,7 @@ class Together:
     """`run` lets time pass for both; the test that gives speeds plays the drive loop's part."""
 
     def __init__(self, start: str = "post1:post2", brc: bool = True, **more: float) -> None:
-        self.robot = SimulatedRobot(builtin_map("test_track"), 100.0, start, in_memory=True, **more)  # type: ignore[arg-type]
+        self.robot = SimulatedRobot(plain_map("test_track"), 100.0, start, in_memory=True, **more)  # type: ignore[arg-type]
         self.now = 100.0
         line: WakeUpLine = self.robot.brc if brc else NoWakeUpLine()
         self.base = Create2(self.robot.memory_port, line)

@@ -7,15 +7,15 @@ import cv2
 import numpy as np
 import pytest
 
-from maps import builtin_map
 from robot.core.errors import CameraAbsent
 from robot.drivers.camera.camera import Device, GrabbingCamera
 from robot.drivers.camera.marker_reader import MarkerReader, MarkerWatch
 from robot.drivers.interfaces import Frame
 from robot.simulated import SimulatedRobot
+from tests.plain_maps import plain_map
 
 pytestmark = pytest.mark.alone
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 
 
 def within_s(limit_s: float, condition: Callable[[], bool]) -> bool:

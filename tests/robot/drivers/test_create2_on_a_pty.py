@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from maps import builtin_map
 from robot.core.errors import PortBusy
 from robot.drivers.create2.create2 import Create2
 from robot.drivers.create2.serial_port import open_serial
 from robot.drivers.interfaces import STOP, Mode, WheelSpeeds
 from robot.simulated import SimulatedRobot
+from tests.plain_maps import plain_map
 
 TICK_S = 0.02
 
@@ -20,7 +20,7 @@ class OnPty:
 
     def __init__(self, start: str) -> None:
         self.now = 50.0
-        self.robot = SimulatedRobot(builtin_map("test_track"), self.now, start, battery_ratio=0.5)
+        self.robot = SimulatedRobot(plain_map("test_track"), self.now, start, battery_ratio=0.5)
         self.base = Create2(lambda: open_serial(self.robot.port_path), self.robot.brc)
 
     def run(self, for_s: float, wanted: WheelSpeeds | None = None) -> None:

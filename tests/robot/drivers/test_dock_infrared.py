@@ -4,12 +4,12 @@ import math
 
 import pytest
 
-from maps import builtin_map
 from robot.drivers.create2.dock_infrared import DockInfrared, DockSight, Side, dock_sight
 from robot.drivers.interfaces import BaseState
 from robot.simulated import Pose, SimulatedRobot
+from tests.plain_maps import plain_map
 
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 DOCK = next(post.dock for post in TRACK.docks() if post.dock)
 
 

@@ -6,15 +6,15 @@ from itertools import product
 
 import pytest
 
-from maps import builtin_map
 from robot.drivers.camera.marker_pose import Optics, code_pose
 from robot.drivers.camera.marker_reader import MarkerReader
 from robot.drivers.interfaces import Sighting
 from robot.simulated import CameraMount
 from robot.simulated.faults import Faults
 from robot.simulated.frames import Renderer, View
+from tests.plain_maps import plain_map
 
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 MARKERS = tuple(marker for post in TRACK.posts.values() for marker in post.markers)
 READER = MarkerReader(TRACK.posts)
 

@@ -12,13 +12,13 @@ import zxingcpp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from maps import builtin_map
 from robot.drivers.camera.marker_reader import MarkerReader, MarkerWatch
 from robot.drivers.camera.qr_decoders import Decoded, Decoder, read_with_opencv, zxing_decoder
 from robot.drivers.interfaces import Frame
 from robot.simulated import Pose, SimulatedRobot
+from tests.plain_maps import plain_map
 
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 DECODERS: list[Decoder] = [zxing_decoder(zxingcpp), read_with_opencv]
 either_decoder = pytest.mark.parametrize("decode", DECODERS, ids=["zxing", "opencv"])
 

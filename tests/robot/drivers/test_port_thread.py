@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from maps import builtin_map
 from protocol.clock import RealClock
 from robot.drivers.create2.create2 import Create2
 from robot.drivers.create2.serial_port import open_serial
@@ -17,6 +16,7 @@ from robot.drivers.interfaces import Mode, WheelSpeeds
 from robot.drivers.port_thread import PortThread
 from robot.simulated import SimulatedRobot
 from robot.simulated.live import Live
+from tests.plain_maps import plain_map
 
 pytestmark = pytest.mark.alone
 AHEAD = WheelSpeeds(100, 100)
@@ -27,7 +27,7 @@ class OnThreads:
 
     def __init__(self) -> None:
         self.clock = RealClock()
-        self.robot = SimulatedRobot(builtin_map("test_track"), self.clock.now(), "post1:post2")
+        self.robot = SimulatedRobot(plain_map("test_track"), self.clock.now(), "post1:post2")
         self.base = PortThread(Create2(lambda: open_serial(self.robot.port_path)), self.clock.now)
         self.before = set(threading.enumerate())
 

@@ -6,11 +6,11 @@ import pytest
 from gpiozero import DigitalOutputDevice
 from gpiozero.pins.mock import MockFactory
 
-from maps import builtin_map
 from robot.core.errors import PortAbsent
 from robot.drivers.create2.create2 import Create2
 from robot.drivers.create2.wake_up import GpioWakeUpLine, KeepAwake, SerialRts
 from robot.simulated import SimulatedRobot
+from tests.plain_maps import plain_map
 
 
 def test_rts_is_brc_where_the_port_has_it() -> None:
@@ -28,7 +28,7 @@ def test_rts_is_brc_where_the_port_has_it() -> None:
 
 
 def test_a_port_without_rts_is_known_as_not_wired_after_the_first_try() -> None:
-    robot = SimulatedRobot(builtin_map("test_track"), 0.0, "post1:post2")
+    robot = SimulatedRobot(plain_map("test_track"), 0.0, "post1:post2")
     rts = SerialRts(robot.port_path)
     base = Create2(rts.open, rts)
     robot.set_fault("frozen", True)

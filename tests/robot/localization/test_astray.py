@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from maps import builtin_map
 from robot.localization.astray import really_towards
 from robot.mission.store import Store
+from tests.plain_maps import plain_map
 from tests.robot.agent.test_navigator import Walk
 
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 
 
 @pytest.fixture
@@ -98,7 +98,7 @@ def test_only_what_is_surely_another_corridor_counts(looks_deg: float, really: s
 
 
 def test_out_of_its_dock_it_knows_by_its_compass_which_line_it_took(store: Store) -> None:
-    walk = Walk(store, home="uc", campus=builtin_map("carleton"))
+    walk = Walk(store, home="uc", campus=plain_map("carleton"))
     walk.body.battery(0.5, docked=True)
     walk.look()
     walk.body.battery(0.5)

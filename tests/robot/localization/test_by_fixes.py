@@ -1,12 +1,12 @@
 """A robot that wakes up in front of its dock and has seen no marker."""
 
-from maps import builtin_map
 from robot.drivers.create2.dock_infrared import DockSight, Side, dock_fix
 from robot.drivers.interfaces import Odometry
 from robot.localization.by_fixes import near_dock
 from robot.localization.place import AtPost, Leaving, Unknown
+from tests.plain_maps import plain_map
 
-TRACK, TUNNELS = builtin_map("test_track"), builtin_map("carleton")
+TRACK, TUNNELS = plain_map("test_track"), plain_map("carleton")
 SEES_DOCK = ((dock_fix(DockSight(Side.LEFT, near=True), 10.0), Odometry()),)
 
 

@@ -4,10 +4,11 @@ import math
 
 import pytest
 
-from maps import NoRoute, UnknownPost, builtin_map
+from maps import NoRoute, UnknownPost
 from robot.localization.directions import Way, next_post, sector, turn_at_rad
+from tests.plain_maps import plain_map
 
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 
 
 @pytest.mark.parametrize(
@@ -38,7 +39,7 @@ def test_sectors_are_those_of_the_prototype(clockwise_deg: float, way: str):
 
 
 def test_every_turn_of_the_tunnels_has_a_word_and_back_is_behind():
-    tunnels = builtin_map("carleton")
+    tunnels = plain_map("carleton")
     for post in tunnels.posts:
         for came_from, _ in tunnels.neighbours(post):
             for to, _ in tunnels.neighbours(post):

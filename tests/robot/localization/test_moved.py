@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from maps import builtin_map
 from protocol.parts import Leg
 from robot.drivers.interfaces import Sighting
 from robot.localization.expected import hangs_beside_this_line
 from robot.localization.facing import facing_by
 from robot.mission.store import Store
+from tests.plain_maps import plain_map
 from tests.robot.agent.test_navigator import Walk
 
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 LEG = Leg(from_post="post1", to_post="post2")
 
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 
-from maps import builtin_map
 from protocol.parts import Leg
 from protocol.to_robot import OpenWay
 from protocol.to_server import CommandAnswer, Event, Fault
@@ -19,8 +18,9 @@ from robot.mission.memory import Incoming, Memory
 from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.store import Store
+from tests.plain_maps import plain_map
 
-CAMPUS = builtin_map("test_track")
+CAMPUS = plain_map("test_track")
 STARTED_AT = datetime(2026, 1, 5, 9, tzinfo=UTC)
 TO_POST3 = Leg(from_post="post2", to_post="post3")
 

@@ -282,8 +282,8 @@ def test_the_pi_needs_its_pin_library_and_no_other_computer_does(tmp_path: Path)
 
 
 def test_settings_that_do_not_fit_the_map_are_told(tmp_path: Path) -> None:
-    grade, said = graded(computer.settings(patient(tmp_path, home="post1")))
-    assert (grade, "post1 has no dock" in said) == (Grade.FAIL, True)
+    grade, said = graded(computer.settings(patient(tmp_path, home="post2")))
+    assert (grade, "post2 is no home" in said) == (Grade.FAIL, True)
 
 
 def test_a_disk_that_takes_nothing_and_a_folder_that_others_may_read_are_told(tmp_path: Path) -> None:

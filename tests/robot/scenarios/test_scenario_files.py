@@ -36,7 +36,7 @@ def refusal(tmp_path: Path, text: str) -> str:
         ("[[stander]]\ncorridor = 'post1-post3'", "stander.corridor: there is no 'post1-post3'"),
         ("[[stander]]\nfrom_s = 3", "stander: the place is missing. Give at or corridor."),
         ("[[robot]]\nname = 'r1'\nstart = 'post9'", "robot.start: A robot cannot start at 'post9'"),
-        ("[[robot]]\nname = 'r1'\nhome = 'post1'", "robot.home: post1 is no post with a dock. There are: post5."),
+        ("[[robot]]\nname = 'r1'\nhome = 'post2'", "robot.home: post2 is no home on this map. There are: "),
         ("[[message]]\nsay = 'cancel'\norder = 'o9'", "message.order: there is no 'o9'"),
         ("[[deed]]\ndo = 'show_code'", "deed.text: no text is given to show. Give one, as text = 'post4'."),
         ("[expect]\ndelivered = ['o9']", "expect.delivered: there is no 'o9'"),

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from maps import builtin_map
 from robot.simulated import Motion, Options, SimulatedRobot
 from robot.simulated.base.packets import PACKETS
 from robot.simulated.body import Build
+from tests.plain_maps import plain_map
 
 EXACT = Options(build=Build(motion=Motion(ripple_mm_s=0.0, wheel_error=0.0)))
 
@@ -51,7 +51,7 @@ def make() -> Iterator[Make]:
 
     def bench(start: str = "post1:post2", campus: str = "test_track", **more: Any) -> Bench:
         more = {"options": EXACT, **more}
-        made.append(SimulatedRobot(builtin_map(campus), 0.0, start, in_memory=True, **more))
+        made.append(SimulatedRobot(plain_map(campus), 0.0, start, in_memory=True, **more))
         return Bench(made[-1])
 
     yield bench

@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from maps import builtin_map
 from robot.simulated import SimulatedRobot
 from robot.simulated.base.commands import COMMANDS
+from tests.plain_maps import plain_map
 
 PASSIVE = 1
 LONGEST_COMMAND = 2 + 2 * 255
@@ -20,7 +20,7 @@ chunks = st.lists(st.one_of(opcodes, st.binary(max_size=8)), max_size=30).map(b"
 @given(st.lists(chunks, max_size=5))
 @pytest.mark.slow
 def test_after_any_bytes_the_robot_can_be_started_again(lines):
-    robot = SimulatedRobot(builtin_map("test_track"), 0.0, "post1:post2", in_memory=True)
+    robot = SimulatedRobot(plain_map("test_track"), 0.0, "post1:post2", in_memory=True)
     port = robot.memory_port()
     for line in (b"\x80\x83", *lines):
         port.write(line)

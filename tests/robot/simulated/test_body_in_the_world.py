@@ -5,10 +5,10 @@ import math
 import pytest
 from gpiozero import DigitalInputDevice
 
-from maps import builtin_map
 from robot.simulated import DiodeMount, Motion, Options, Person, Pose, UnknownStart, Wall
 from robot.simulated.base.drive_base import MM_PER_COUNT
 from robot.simulated.body import Build
+from tests.plain_maps import plain_map
 
 STILL = Motion(ripple_mm_s=0.0, wheel_error=0.0)
 
@@ -305,7 +305,7 @@ def test_steps_do_not_depend_on_how_often_the_world_is_asked(make):
 
 
 def test_the_tunnels_have_their_floor_and_docks_too(make):
-    campus = builtin_map("carleton")
+    campus = plain_map("carleton")
     for post in campus.docks():
         bench = make(f"dock:{post.name}", campus="carleton")
         bench.run(2)

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 import zxingcpp
 
-from maps import builtin_map
 from protocol.clock import SteppedClock
 from robot.core.config import load_settings
 from robot.drivers.camera.marker_pose import Optics
@@ -20,6 +19,7 @@ from robot.ops.assembly import Simulation, simulated_robot
 from robot.simulated import CameraMount, Options, Pose
 from robot.simulated.faults import Faults
 from robot.simulated.frames import Renderer, View
+from tests.plain_maps import plain_map
 
 CODE = "CM1:" + "0123456789abcdef" * 2
 
@@ -29,7 +29,7 @@ def texts(frame):
 
 
 def renderer(mount=None, seed=0, campus="test_track"):
-    posts = builtin_map(campus).posts.values()
+    posts = plain_map(campus).posts.values()
     markers = tuple(marker for post in posts for marker in post.markers)
     return Renderer(markers, mount or CameraMount(), Faults(), seed)
 
@@ -59,7 +59,7 @@ def test_the_settings_choose_the_size_and_the_view(size_px: tuple[int, int], tmp
     camera = {"width_px": width, "height_px": height, "field_of_view_deg": 75.0}
     settings = load_settings(None, {"data": tmp_path, "camera": camera})
     simulation = Simulation("post1", in_memory=True)
-    with closing(simulated_robot(settings, builtin_map("test_track"), SteppedClock(), simulation)) as robot:
+    with closing(simulated_robot(settings, plain_map("test_track"), SteppedClock(), simulation)) as robot:
         frame = robot.camera.read()[1]
         assert frame.shape == (height, width)
         assert [robot.camera.get(prop) for prop in (cv2.CAP_PROP_FRAME_WIDTH, cv2.CAP_PROP_FRAME_HEIGHT)] == [*size_px]
@@ -81,7 +81,7 @@ def test_a_robot_at_a_post_reads_its_marker(make, start):
 
 def test_every_marker_of_the_tunnels_can_be_read_from_the_line():
     drawn = renderer(campus="carleton")
-    for post in builtin_map("carleton").posts.values():
+    for post in plain_map("carleton").posts.values():
         for marker in post.markers:
             heading = marker.heading_rad + math.pi / 2
             x_m = marker.x_m + 0.35 * math.cos(marker.heading_rad)

@@ -8,11 +8,11 @@ import threading
 
 import pytest
 
-from maps import builtin_map
 from protocol.clock import RealClock
 from robot.simulated import SWITCHES, Door, Faults, SimulatedRobot, UnknownSwitch, WrongValue
 from robot.simulated.door import COMMANDS, obey
 from robot.simulated.live import Live
+from tests.plain_maps import plain_map
 
 PASSIVE, SAFE = 1, 2
 CODE = "CM1:" + "0123456789abcdef" * 2
@@ -198,7 +198,7 @@ def test_a_robot_pushed_by_hand_counts_up_whichever_way(awake):
 def home(tmp_path):
     """A living robot in real time, with a door in a folder."""
     clock = RealClock()
-    robot = SimulatedRobot(builtin_map("test_track"), clock.now(), "post1:post2", in_memory=True)
+    robot = SimulatedRobot(plain_map("test_track"), clock.now(), "post1:post2", in_memory=True)
     door = Door(robot, tmp_path / "door", tell=lambda: {"find_line_episodes": 3})
     with Live(robot, clock):
         yield robot, tmp_path / "door"
@@ -313,7 +313,7 @@ def test_every_door_command_has_an_answer(awake):
 
 
 def test_a_world_that_stands_still_says_so(tmp_path):
-    robot = SimulatedRobot(builtin_map("test_track"), 0.0, in_memory=True)
+    robot = SimulatedRobot(plain_map("test_track"), 0.0, in_memory=True)
     door = Door(robot, tmp_path / "door", answer_within_s=0.1)
     answer = knock(tmp_path / "door", {"do": "state"})[0]
     assert not answer["ok"]

@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from maps import builtin_map
 from protocol.clock import RealClock
 from robot.simulated import Person, SimulatedRobot
 from robot.simulated.live import Live
+from tests.plain_maps import plain_map
 
 SAFE = 2
 CLIENT = """
@@ -124,7 +124,7 @@ class Client:
 @pytest.fixture
 def robot() -> Iterator[SimulatedRobot]:
     clock = RealClock()
-    made = SimulatedRobot(builtin_map("test_track"), clock.now(), "post1:post2", battery_ratio=0.5)
+    made = SimulatedRobot(plain_map("test_track"), clock.now(), "post1:post2", battery_ratio=0.5)
     with Live(made, clock):
         yield made
     made.close()

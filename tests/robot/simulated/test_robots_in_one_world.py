@@ -4,14 +4,14 @@ import math
 
 import pytest
 
-from maps import builtin_map
 from robot.drivers.camera.marker_reader import MarkerReader
 from robot.simulated import Collision, CollisionJudge, Pose
+from tests.plain_maps import plain_map
 from tests.robot.simulated.conftest import Bench, Make
 
 NEVER_DEEPER_MM = 0.5
 STEP_S = 0.005
-READER = MarkerReader(builtin_map("test_track").posts)
+READER = MarkerReader(plain_map("test_track").posts)
 
 
 def judged(benches: list[Bench], seconds: float, judge: CollisionJudge | None = None) -> list[Collision]:

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from maps import builtin_map
 from robot.ops.simulated_world import SAVE_EVERY_S, SavedWorld
 from robot.simulated import SimulatedRobot
+from tests.plain_maps import plain_map
 
 STEP_S = 0.02
 AS_WRITTEN_M = 1e-9
@@ -17,7 +17,7 @@ AS_WRITTEN_M = 1e-9
 @pytest.fixture
 def robots() -> Iterator[list[SimulatedRobot]]:
     """One that lives, and the one that is there after its computer was killed."""
-    campus = builtin_map("test_track")
+    campus = plain_map("test_track")
     both = [SimulatedRobot(campus, 0.0, "post1:post2", in_memory=True) for _ in range(2)]
     yield both
     for robot in both:

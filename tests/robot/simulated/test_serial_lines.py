@@ -11,16 +11,16 @@ from struct import unpack
 import pytest
 import serial
 
-from maps import builtin_map
 from robot.simulated import SimulatedRobot, WrongValue
 from robot.simulated.base.serial_line import PtyLine
+from tests.plain_maps import plain_map
 
 SAFE = 2
 
 
 @pytest.fixture
 def robot():
-    made = SimulatedRobot(builtin_map("test_track"), 0.0, "post1:post2")
+    made = SimulatedRobot(plain_map("test_track"), 0.0, "post1:post2")
     yield made
     made.close()
 
@@ -40,7 +40,7 @@ def test_pyserial_opens_the_port_for_itself_and_gets_answers(robot):
 
 def test_a_stable_name_leads_to_the_port(tmp_path):
     link = tmp_path / "create2"
-    robot = SimulatedRobot(builtin_map("test_track"), 0.0, "post1:post2", link=link)
+    robot = SimulatedRobot(plain_map("test_track"), 0.0, "post1:post2", link=link)
     assert os.path.realpath(link) == robot.port_path
     robot.close()
     assert not link.is_symlink()

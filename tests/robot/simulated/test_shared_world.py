@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from maps import builtin_map
 from robot.simulated import CollisionJudge, Pose, SharedWorld, SimulatedRobot, SimulatedWorldError, TruePose, WorldFile
+from tests.plain_maps import plain_map
 from tests.robot.simulated.conftest import EXACT, Bench
 
 ROOT = Path(__file__).parents[3]
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 STEP_S = 0.005
 
 

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 import zxingcpp
 
-from maps import builtin_map
 from maps.tags import tag_numbers
 from robot.drivers.camera.marker_reader import MarkerReader
 from robot.simulated import CameraMount, Options, Person, Pose, SimulatedRobot, Wall
 from robot.simulated.faults import Faults
 from robot.simulated.frames import Renderer, View
 from robot.simulated.obstacles import Obstacle
+from tests.plain_maps import plain_map
 
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 MARKERS = tuple(marker for post in TRACK.posts.values() for marker in post.markers)
 ABREAST = View(0.0, 3.7, math.pi / 2)
 """post1's marker is 350 mm to the left, in the middle of the picture."""

@@ -5,12 +5,12 @@ import inspect
 
 import pytest
 
-from maps import builtin_map
 from robot.skills import Dock, FindLine, FollowLine, Say, Skill, Turn, Undock, WaitHandover
 from robot.skills.ends import ENDS, OF_ANY, Ends
+from tests.plain_maps import plain_map
 
 SKILLS: tuple[Skill, ...] = (
-    FollowLine(builtin_map("test_track")),
+    FollowLine(plain_map("test_track")),
     Turn(1.0),
     FindLine(),
     Dock(),

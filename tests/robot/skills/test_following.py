@@ -9,12 +9,13 @@ import pytest
 
 from benchmarks.body.line import ride
 from benchmarks.body.turns import ON_THE_LINE, cross, small_map
-from maps import CampusMap, builtin_map
+from maps import CampusMap
 from robot.skills import Done, Failed, FindLine, FollowLine, Turn
+from tests.plain_maps import PLAIN_TUNNELS, plain_map
 from tests.robot.skills.track import Drive
 
 Make = Callable[..., Drive]
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 
 
 def without_marker(post: str) -> CampusMap:
@@ -68,7 +69,7 @@ def test_a_half_turn_takes_little_longer_than_the_wheels_need():
 )
 @pytest.mark.nightly
 def test_in_the_tunnels_neither(turn: tuple[str, str, str]):
-    crossing = cross(small_map("carleton"), *turn, seed=7)
+    crossing = cross(small_map(PLAIN_TUNNELS), *turn, seed=7)
     assert (crossing.outcome, crossing.searches) == (ON_THE_LINE, 0)
 
 

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import pytest
 
-from maps import builtin_map
 from robot.drivers.interfaces import STOP
 from robot.simulated import Options, Person, Wall
 from robot.skills.follow_line import FollowLine
+from tests.plain_maps import plain_map
 from tests.robot.skills.track import Drive
 
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 AHEAD_M = 0.7
 """From the axle to the middle of a person in the way: a third of a metre to the touch."""
 REFLEX_S = 3.4

@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import pytest
 
-from maps import builtin_map
 from robot.drivers.interfaces import BodyShape, LineReading, Odometry
 from robot.localization.directions import turn_at_rad
 from robot.skills import Done, FollowLine, Turn
 from robot.skills.unread_post import UnreadPost
+from tests.plain_maps import plain_map
 from tests.robot.skills.track import Drive
 
-TRACK = builtin_map("test_track")
+TRACK = plain_map("test_track")
 ON_LINE, WITH_RIGHT, ALL = (
     LineReading(False, True, False),
     LineReading(False, True, True),

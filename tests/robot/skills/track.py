@@ -8,7 +8,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from maps import CampusMap, builtin_map
+from maps import CampusMap
 from robot.drive_loop import DriveLoop
 from robot.drivers.camera.marker_reader import MarkerReader, MarkerWatch
 from robot.drivers.create2.create2 import Create2
@@ -16,6 +16,7 @@ from robot.drivers.interfaces import BodyShape
 from robot.drivers.line_sensor import ThreeDiodes
 from robot.simulated import Options, SimulatedRobot
 from robot.skills.interfaces import JobEnd, Outcome, Skill
+from tests.plain_maps import plain_map
 
 TICK_S = 0.02
 CAMERA_EVERY = 5
@@ -26,7 +27,7 @@ class Drive:
     """Steps world, drive loop and camera together; keeps the path and every speed that was sent."""
 
     start: str
-    campus: CampusMap = field(default_factory=lambda: builtin_map("test_track"))
+    campus: CampusMap = field(default_factory=lambda: plain_map("test_track"))
     seed: int = 1
     options: Options = field(default_factory=Options)
     battery_ratio: float | None = None

@@ -4,7 +4,6 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
 from bdi import parse_term
-from maps import builtin_map
 from protocol.parts import Leg, Stop, StopAction
 from protocol.to_robot import Mission
 from robot.agent.actions.actions import Actions, table_for
@@ -15,6 +14,7 @@ from robot.mission.memory import Incoming, Memory
 from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.store import Store
+from tests.plain_maps import plain_map
 from tests.robot.fake_body import FakeBody
 
 NOW = datetime(2026, 1, 5, 9, tzinfo=UTC)
@@ -56,7 +56,7 @@ class Bench:
 
     def __post_init__(self) -> None:
         self.missions = MissionManager(self.store, Memory(self.store), Outbox(self.store), lambda: NOW)
-        self.navigator = Navigator(builtin_map("test_track"), "post5", self.missions, now=0.0)
+        self.navigator = Navigator(plain_map("test_track"), "post5", self.missions, now=0.0)
         self.hands = Hands(self.body, self.navigator, self.missions, noted=self.noted.append)
         self.actions = Actions(self.hands, table_for(self.mode))
         self._next = 0
