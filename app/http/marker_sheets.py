@@ -1,4 +1,4 @@
-"""Marker sheets of the map's posts, for the printer: the drawing of `python -m maps markers`, one post at a time."""
+"""Marker sheets of posts and bays, for the printer: the drawing of `python -m maps markers`, one place at a time."""
 
 from typing import Annotated, Any, Final
 
@@ -18,7 +18,7 @@ NameOfPost = Annotated[str, Path(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=
 
 
 class NoSuchPost(NotFound):
-    """The campus map has no post of this name."""
+    """The campus map has no post or bay of this name."""
 
     code = "no_such_post"
 
@@ -29,9 +29,9 @@ class NoSuchPost(NotFound):
     responses={**SHEET, **problems(NoSuchPost, RoleNeeded)},
 )
 async def marker_picture(post: NameOfPost, user: DispatcherOrMaintainer, campus: CampusDep) -> Response:
-    """A post's marker sheet (SVG, 148 × 210 mm, to be printed at 100 %), as often as it says."""
+    """The marker sheet of a post or bay (SVG, 148 × 210 mm, to be printed at 100 %), as often as it says."""
     try:
-        found = campus.post(post)
+        found = campus.track.post(post)
     except UnknownPost as error:
         raise NoSuchPost(str(error)) from None
     return Response(marker_sheet(found), media_type="image/svg+xml")

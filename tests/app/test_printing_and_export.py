@@ -9,6 +9,7 @@ from fastapi import FastAPI
 
 from app.accounts.sign_in.service import find_person, set_roles
 from app.core.database.database import Database
+from app.core.settings import Settings
 from app.models import Role
 from app.retention.order_export import LONG_AGO, pieces
 from protocol.clock import SteppedClock
@@ -18,6 +19,12 @@ HEAD = (
     "\ufeffid,state,priority,created_at,updated_at,sender,recipient,placed_by,from_post,to_post,description,robot,"
     "window_from,window_to,loaded_at,ended_at\r\n"
 )
+
+
+@pytest.fixture
+def settings(settings: Settings) -> Settings:
+    """With a map that has bays on the floor: they have sheets, too."""
+    return settings.model_copy(update={"map": "test_track"})
 
 
 @pytest.fixture
@@ -107,6 +114,7 @@ def test_a_marker_sheet_is_the_one_of_the_command_in_its_true_size(dispatcher: B
     assert "post1" in answer.text
     counts = {post["name"]: post["markers"] for post in dispatcher.get("/api/v1/map").json()["posts"]}
     assert f"{counts['post1']} of these at this post" in answer.text
+    assert "2 of these at this bay" in dispatcher.get("/api/v1/map/posts/post5_bay1/marker.svg").text
     unknown = dispatcher.get("/api/v1/map/posts/pots1/marker.svg")
     assert (unknown.status_code, unknown.json()["code"]) == (404, "no_such_post")
     assert "post1" in unknown.json()["detail"]
