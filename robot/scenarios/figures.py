@@ -122,11 +122,11 @@ def _way_m(stage: Stage, stopwatch: Stopwatch, done_s: float) -> float:
         posts = (letter.order.origin, letter.order.destination)
         goals += [(at_s, post) for (at_s, _), post in zip(letter.moved, posts, strict=False)]
     start = stage.service.interlocking.homes[stage.actors[0].name] or stage.actors[0].posts[0][1]
-    return _length_m(stage.campus, [start, *(post for _, post in sorted(goals))])
+    return _length_m(stage.campus.track, [start, *(post for _, post in sorted(goals))])
 
 
-def _length_m(campus: CampusMap, posts: Sequence[str]) -> float:
-    return sum(shortest_route(campus, a, b).length_m for a, b in pairwise(posts))
+def _length_m(track: CampusMap, places: Sequence[str]) -> float:
+    return sum(shortest_route(track, a, b).length_m for a, b in pairwise(places))
 
 
 def _unexpected(scenario: Scenario, ending: Ending) -> list[str]:

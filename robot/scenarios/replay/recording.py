@@ -153,15 +153,16 @@ def _head(scenario: Scenario, campus: CampusMap) -> Row:
 
 
 def _map(campus: CampusMap) -> Row:
-    docks = [post.dock for post in campus.docks() if post.dock]
+    track = campus.track
+    docks = [place.dock for place in track.docks() if place.dock]
     return {
         "title": campus.title,
         "posts": [[post.name, post.x_m, post.y_m] for post in campus.posts.values()],
-        "corridors": [[corridor.name, [list(point) for point in corridor.tape]] for corridor in campus.corridors],
+        "corridors": [[corridor.name, [list(point) for point in corridor.tape]] for corridor in track.corridors],
         "markers": [
             [round(one.x_m, 3), round(one.y_m, 3), round(one.heading_rad, 3)]
-            for post in campus.posts.values()
-            for one in post.markers
+            for place in track.posts.values()
+            for one in place.markers
         ],
         "docks": [[dock.x_m, dock.y_m, dock.heading_rad] for dock in docks],
     }

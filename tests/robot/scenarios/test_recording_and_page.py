@@ -36,6 +36,16 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "run.gz"
 
 
+def test_the_recording_draws_spurs_and_what_stands_beside_them(tmp_path):
+    scenario = Scenario.model_validate({"title": "track", "limit_s": 1})
+    with Stage(scenario, tmp_path) as stage, Recorder(tmp_path / "run.gz", stage) as recorder:
+        recorder.end(stage.run())
+        track = stage.campus.track
+    drawn = read_recording(tmp_path / "run.gz")[0]["map"]
+    assert "post1-post1_bay2" in {name for name, _ in drawn["corridors"]}
+    assert len(drawn["markers"]) == sum(len(place.markers) for place in track.posts.values())
+
+
 @pytest.mark.nightly
 def test_the_recording_has_the_truth_the_beliefs_and_the_people(recording):
     rows = read_recording(recording)
