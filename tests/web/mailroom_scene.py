@@ -14,6 +14,7 @@ from app.orders.service import Actor
 from app.orders.transitions import By
 from app.orders.views.schemas import NewOrder
 from protocol.clock import Clock, RealClock
+from tests.plain_maps import PLAIN_TRACK
 from tests.web.service import Service
 from tests.web.visitor import Visit, Visitor
 
@@ -52,7 +53,7 @@ class Scene:
     """Writes to the service's database as its own parts would."""
 
     def __init__(
-        self, service: Service, clock: Clock | None = None, campus: str = "test_track", zone: str = ""
+        self, service: Service, clock: Clock | None = None, campus: str = str(PLAIN_TRACK), zone: str = ""
     ) -> None:
         settings = Settings(
             data=service.folder, public_url=service.url, pages=service.folder / "none", map=campus, time_zone=zone

@@ -24,6 +24,7 @@ from maps import find_map
 from protocol.clock import RealClock
 from protocol.envelope import YOUNGER
 from tests.app.robots.playing import PlayedRobot
+from tests.plain_maps import PLAIN_TRACK
 
 ROOT = Path(__file__).parents[2]
 START_LIMIT_S = 90.0
@@ -35,10 +36,14 @@ ALL_BUT_PROOFS = tuple(one for one in YOUNGER if one != "proof")
 
 
 class Service:
-    """Serves on a free port of this machine; `door` makes it a demonstration."""
+    """Serves on a free port of this machine; `door` makes it a demonstration. Played robots stand on posts."""
 
     def __init__(
-        self, folder: Path, campus: str = "test_track", door: Path | None = None, more: Mapping[str, str] | None = None
+        self,
+        folder: Path,
+        campus: str = str(PLAIN_TRACK),
+        door: Path | None = None,
+        more: Mapping[str, str] | None = None,
     ) -> None:
         self._folder, self._campus = folder, campus
         self._port = _free_port()

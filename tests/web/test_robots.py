@@ -25,7 +25,7 @@ SPEED = "3"
 
 @pytest.fixture(scope="module")
 def tunnel(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    with Service(tmp_path_factory.mktemp("tunnel")) as service:
+    with Service(tmp_path_factory.mktemp("tunnel"), "test_track") as service:
         yield service
 
 
