@@ -27,6 +27,7 @@ class PlayedServer:
     received: Received = field(default_factory=Received)
     journal: str = "server-journal"
     resume_from: int = 1
+    home: str | None = None
     heard: list[Envelope] = field(default_factory=list)
     sockets: list[ServerConnection] = field(default_factory=list)
     tokens: list[str | None] = field(default_factory=list)
@@ -45,7 +46,8 @@ class PlayedServer:
     async def hear(self, envelope: Envelope) -> None:
         self.heard.append(envelope)
         if isinstance(envelope.body, Hello):
-            await self.send(Welcome(received=self.received, resume_from=self.resume_from, server="played", at=AT))
+            facts = {"received": self.received, "resume_from": self.resume_from, "home": self.home}
+            await self.send(Welcome(server="played", at=AT, **facts))
 
     async def send(self, message: Part, seq: int | None = None, ack: int = 0) -> None:
         await self.sockets[-1].send(from_server(message, seq, ack, self.journal).to_text())

@@ -133,8 +133,9 @@ class Connection:
             # Our disk was put back from an older copy: the server would take our next news for old.
             outbox.renew_journal()
             raise LinkBroken("the server knows later messages of this robot than the robot does: a new journal begins")
-        if welcome.home is not None:
+        if welcome.home is not None and welcome.home != memory.home():
             memory.keep_home(welcome.home)
+            self._ends.deliver(Incoming(welcome, envelope.journal))  # what is held has changed
         lost = memory.resume(envelope.journal, welcome.resume_from)
         if lost:
             log.error("messages_from_server_lost", count=lost, journal=envelope.journal)

@@ -40,6 +40,18 @@ async def test_it_signs_in_with_its_token_and_says_what_it_carries(robot: Robot)
         assert link.problem is None
 
 
+async def test_a_home_that_the_service_gives_is_kept_and_passed_on_once(robot: Robot) -> None:
+    async with playing() as server:
+        server.home = "post4_bay2"
+        async with robot.linked(server.url) as link:
+            await until(lambda: link.online)
+            assert robot.memory.home() == "post4_bay2"
+            assert [type(one.message).__name__ for one in link.incoming()] == ["Welcome"], "what is held has changed"
+            server.sockets[-1].transport.abort()
+            await until(lambda: server.types().count("hello") == 2)
+            assert list(link.incoming()) == []
+
+
 async def test_the_snapshot_overtakes_the_backlog_which_is_flagged_and_in_order(robot: Robot) -> None:
     for post in ("post2", "post3", "post4"):
         robot.outbox.put(cleared(post))
