@@ -11,13 +11,15 @@ cannot wait, but all that it does since it last stood can be later by its `slack
 import heapq
 from collections.abc import Iterator, Sequence
 from math import inf
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from fleet.schedule.journey import Goal, Leg, Start, standing
 from fleet.schedule.network import Lane, Network
 from fleet.schedule.occupied import Occupied, Span
 
 _ALWAYS: Span = (-inf, inf)
+_STANDS: Final = -inf
+"""In a state, of one that does not go straight on; else when it can at the latest."""
 
 
 class Found(NamedTuple):
@@ -94,7 +96,7 @@ class _Search:
             leg = node.leg
             if node.goals == len(self._goals) and not node.passes and self._may_end(leg, node.until_s):
                 return _found(node)
-            latest_s = leg.ready_s + node.slack_s if node.passes else inf
+            latest_s = leg.ready_s + node.slack_s if node.passes else _STANDS
             state = (leg.post, leg.at_home, node.goals, node.until_s, latest_s)
             if reached.get(state, inf) > leg.ready_s:
                 reached[state] = leg.ready_s
@@ -149,7 +151,7 @@ class _Search:
         since_s, until_s = span
         ready_s, travel_s = node.leg.ready_s, lane.travel_s
         earliest_s = ready_s if ready_s > since_s else since_s
-        known_s = self._reached.get((lane.end, at_home, node.goals, until_s, inf), inf)
+        known_s = self._reached.get((lane.end, at_home, node.goals, until_s, _STANDS), inf)
         latest_s = min(node.until_s, until_s - travel_s, known_s - travel_s)
         for opens_s, closes_s in windows:
             if closes_s < earliest_s:
@@ -173,7 +175,7 @@ class _Search:
         arrive_s, later_s = enter_s + takes_s, enter_s - ready_s if node.passes else 0.0
         leg = Leg(lane, enter_s, arrive_s, lane.end, at_home, 0, arrive_s + in_s, in_s)
         self._reach(leg, until_s, node, later_s)
-        if in_s:
+        if in_s and not _has_passed(node, lane.end):
             self._pass(leg, until_s, node, min(closes_s, latest_s) - enter_s, later_s)
 
     def _first_fit(
@@ -231,6 +233,15 @@ class _Search:
         if self._may_end_in_a_bay or self._home is None:
             return done_s, ready_s
         return done_s, ready_s + way_s[self._home]
+
+
+def _has_passed(node: _Node | None, post: int) -> bool:
+    """Tell if it has been at this post since it last stood: it would go round and round."""
+    while node is not None and node.passes:
+        if node.leg.post == post:
+            return True
+        node = node.before
+    return node is not None and node.leg.post == post
 
 
 def _left(network: Network, goals: Sequence[Goal]) -> list[float]:

@@ -2,7 +2,8 @@
 second."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from math import inf
 from random import Random
 
 import pytest
@@ -183,3 +184,32 @@ def test_no_way_is_quicker_than_the_one_that_is_found(rng: Random, most: int, cr
         assert way_home is not None
         assert soonest is not None
         assert way_home.legs[-1].stands_s == pytest.approx(soonest * SLOT_S, abs=1e-4)
+
+
+@pytest.mark.parametrize("towards", [(), ("p1",)])
+def test_where_no_way_leads_the_search_ends_also_where_robots_could_go_round_and_round(
+    towards: tuple[str, ...],
+) -> None:
+    """On a ring, where another robot stands at home's post for ever and one comes by each hour."""
+    network = replace(ring(5), crossing_s=(5.0,) * 6)
+    taken = Occupied(network)
+    taken.put("stands", (Leg(None, 0.0, -inf, 5, False, 0, 0.0),))
+    for hour in range(1, 40):
+        by = network.lane(2, 3)
+        taken.put(f"comes by {hour}", (Leg(by, 3600.0 * hour, 3600.0 * hour + 15.0, 3, True, 0, 3600.0 * hour, 5.0),))
+    start = Start(0, False, 0.0, 0.0)
+    if towards:
+        lane = network.lane(0, 1)
+        start = Start(1, False, 105.0, 0.0, lane, 100.0)
+    assert find_work(network, taken, start, (Goal(5, 5.0),), None) is None
+
+
+def ring(posts: int) -> Network:
+    """Posts in a ring, and one more beside post 0."""
+    lanes: list[list[Lane]] = [[] for _ in range(posts + 1)]
+    edges = [*((post, (post + 1) % posts) for post in range(posts)), (0, posts)]
+    for number, (a, b) in enumerate(edges):
+        lanes[a].append(Lane(number, 0, a, b, 10.0))
+        lanes[b].append(Lane(number, 1, b, a, 10.0))
+    names = tuple(f"p{post}" for post in range(posts + 1))
+    return Network(names, (1,) * (posts + 1), tuple(f"{a}-{b}" for a, b in edges), tuple(map(tuple, lanes)))
