@@ -38,7 +38,7 @@ class Place(NamedTuple):
 
 
 class Message(NamedTuple):
-    """`what`: cleared, crossed, served or asks."""
+    """`what`: cleared, crossed, turned, served or asks."""
 
     what: str
     post: int = 0
@@ -163,9 +163,10 @@ class Floor:
         standing: dict[int, int] = {}
         for name, body in self.bodies.items():
             for what, number in _occupied(body.place):
+                is_nobodys = what == "crossing" and not self.network.crossing_s[number]
                 if what == "bay":
                     standing[number] = standing.get(number, 0) + 1
-                elif (other := taken.setdefault((what, number), name)) != name:
+                elif not is_nobodys and (other := taken.setdefault((what, number), name)) != name:
                     raise MeetingError(f"{name} meets {other}: {what} {number}")
         for post, bodies in standing.items():
             if bodies > self.network.bays[post]:
@@ -220,6 +221,7 @@ class Floor:
             assert place.lane is not None
             back = next(lane for lane in self.network.lanes[place.post] if lane.corridor == place.lane.corridor)
             self._set(name, place=Place("lane", back.end, back), told=None)
+            self._say(name, Message("turned", lane=back))
         elif place.what == "lane":
             self._set(name, place=place._replace(what="end"))
         elif place.what == "end" and body.ahead and body.told is None:
@@ -263,6 +265,9 @@ class Floor:
                 controller.served(name, message.key, self.now_s)
             case "asks":
                 self.records[name] = replace(record, waits=True)
+            case "turned":
+                assert message.lane is not None
+                self.records[name] = self._turned(name, message.lane)
             case "cleared":
                 assert message.lane is not None
                 self._write_cleared(name, message.lane)
@@ -311,15 +316,13 @@ class Floor:
             self._answers(name, self.controller.claims(name, *ends, self.now_s))
         elif isinstance(move, ComeIn):
             if record.towards and move.post != record.towards[-1]:
-                self._turns(name, move)
+                self._tell(name, move)
             else:
                 self._answers(name, self.controller.comes_in(name, posts[move.post], self.now_s))
 
-    def _turns(self, name: str, move: ComeIn) -> None:
-        record = self.records[name]
-        assert len(record.towards) == 1 and move.post == record.post
-        self.records[name] = replace(record, post=record.towards[0], towards=(record.post,), to_home=move.at_home)
-        self._tell(name, move)
+    def _turned(self, name: str, back: Lane) -> Record:
+        record, home = self.records[name], self.bodies[name].home
+        return replace(record, post=back.start, towards=(back.end,), to_home=back.end == home)
 
     def _answers(self, name: str, answer: Granted | LetIn | Waits | Denied) -> None:
         record = self.records[name]

@@ -316,7 +316,7 @@ class TrafficController:
     def _may_leave(self, its: Participant) -> bool:
         """It stands; or it is at the end of its corridor, where it may cross without a stop."""
         start = its.start
-        may_pass = self._whole.crossing_s[start.post] > 0.0 and not (start.before or start.crosses or its.turns)
+        may_pass = self._whole.crossing_s[start.post] > 0.0 and not (start.is_on_its_way or start.crosses or its.turns)
         return start.rests or may_pass
 
     def _lets_in(self, robot: str, lane: Lane, now_s: float) -> None:
@@ -334,7 +334,7 @@ class TrafficController:
             its.asks_in = False  # it has been let in before
             return LetIn(post, start.at_home)
         others = self._waits_to_cross(robot, post, now_s)
-        if start.post != post or start.before or journey is None or others or post in self.network.shut:
+        if start.post != post or start.is_on_its_way or journey is None or others or post in self.network.shut:
             return Waits(start.lane, others, now_s if journey is None else self._moves_s(robot))
         its.asks_in = False
         if makes_room:

@@ -173,7 +173,8 @@ class Course:
         clear_s = self._network.clearance_s
         from_s = -inf
         for passage in self._passages.get(lane.corridor, ()):
-            if lane.following_s is not None and passage.lane.backwards == lane.backwards:
+            follows = None not in (lane.following_s, passage.lane.following_s)
+            if lane.following_s is not None and follows and passage.lane.backwards == lane.backwards:
                 from_s = max(from_s, max(passage.enter_s, passage.leave_s - travel_s) + lane.following_s)
             else:
                 from_s = max(from_s, passage.leave_s + clear_s)
@@ -185,6 +186,6 @@ class Course:
         for passage in self._passages[mine.lane.corridor]:
             if passage is mine:
                 break
-            if mine.lane.following_s is not None and passage.lane.backwards == mine.lane.backwards:
-                from_s = max(from_s, passage.leave_s + mine.lane.following_s)
+            if passage.lane.backwards == mine.lane.backwards:
+                from_s = max(from_s, passage.leave_s + (mine.lane.following_s or self._network.clearance_s))
         return from_s

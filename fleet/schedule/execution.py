@@ -70,7 +70,7 @@ def waits_to_cross(
             continue
         if any(crossing == post for crossing, _ in start.crossings()):
             yield other
-        elif start.lane is not None and start.post == post and not start.before:
+        elif start.lane is not None and start.post == post and not start.is_on_its_way:
             comes_soon = now_s <= start.arrives_s < now_s + over_s
             is_first = next_move_s(start, journeys.get(other)) < mine_s
             if _is_ahead(start, starts[robot]) or (comes_soon and is_first):
@@ -190,7 +190,7 @@ def _is_in_the_way(network: Network, start: Start, mine: Leg, now_s: float) -> b
     if start.lane is None or mine.lane is None or start.lane.corridor != mine.lane.corridor:
         return False
     after_s = mine.lane.following_s
-    if after_s is None or start.lane.backwards != mine.lane.backwards:
+    if after_s is None or start.lane.following_s is None or start.lane.backwards != mine.lane.backwards:
         return True
     late_s = max(start.entered_s, start.arrives_s - network.takes_s(mine.lane))
     return now_s < late_s + after_s

@@ -61,6 +61,11 @@ class Start:
         """It is wholly in a bay or at home."""
         return self.lane is None and not self.crosses
 
+    @property
+    def is_on_its_way(self) -> bool:
+        """It has a corridor or a crossing before it comes into its last corridor."""
+        return any(through.lane is not None or through.over_s for through in self.before)
+
     def on_the_way(self) -> Iterator["Start"]:
         """Each place before that post as one that it has until it is at the next."""
         next_s = [*(through.arrives_s for through in self.before[1:]), self.arrives_s]

@@ -17,6 +17,9 @@ ROUNDING_S: Final = 1e-6
 fit when the same sum is taken in another way."""
 
 
+_NOBODY_FOLLOWS: Final = -1
+
+
 class Passage(NamedTuple):
     """One robot's way through a corridor."""
 
@@ -118,7 +121,8 @@ class Occupied:
         return found
 
     def _pass(self, robot: str, lane: Lane, enter_s: float, leave_s: float) -> None:
-        self._passages[lane.corridor].append(Passage(robot, lane.backwards, enter_s, leave_s))
+        backwards = _NOBODY_FOLLOWS if lane.following_s is None else lane.backwards
+        self._passages[lane.corridor].append(Passage(robot, backwards, enter_s, leave_s))
         self._corridors_of[robot].add(lane.corridor)
         self._forget(lane.corridor)
 

@@ -5,7 +5,7 @@ from random import Random
 
 import pytest
 
-from fleet.schedule.controller import ComeIn, Granted, LetIn, TrafficController, Waits
+from fleet.schedule.controller import ComeIn, GoOn, Granted, LetIn, TrafficController, Waits
 from fleet.schedule.evacuation import evacuate
 from fleet.schedule.journey import Goal, Start, Task
 from fleet.schedule.network import Lane, Network
@@ -160,3 +160,46 @@ def test_no_robot_is_brought_home_over_a_crossing_that_is_shut() -> None:
     network = replace(line(2), crossing_s=(5.0, 5.0))
     assert evacuate(network, {"r1": at(0, 0)}) is not None
     assert evacuate(network.without((), shut={0}), {"r1": at(0, 0)}) is None
+
+
+def test_no_robot_follows_one_that_is_to_turn_round_and_may_not_know_it_yet() -> None:
+    network = replace(line(3, 3), crossing_s=(5.0,) * 3)
+    lanes = tuple(tuple(lane._replace(following_s=20.0) for lane in out) for out in network.lanes)
+    controller = TrafficController(replace(network, lanes=lanes))
+    controller.joins("dead", post="b", home="c", at_home=False, now_s=0.0, towards=["c"], on_crossing=True)
+    controller.joins("r1", post="a", home="c", at_home=False, now_s=0.0, towards=["b"])
+    controller.joins("r2", post="b", home="a", at_home=False, now_s=0.0)
+    controller.freeze("dead", 10.0)
+    controller.unfreeze("dead", 20.0)
+    controller.crossed("dead", "b", 30.0)
+    answer = controller.claims("r2", "b", "a", 500.0)
+    assert isinstance(answer, Waits)
+    assert "r1" in answer.robots
+    controller.comes_in("r1", "a", 600.0)
+    controller.cleared("r1", "b", "a", 601.0)
+    assert [robot for robot, _ in controller.grants(602.0)] == ["r2"]
+
+
+def test_beside_posts_where_crossings_are_nobodys_robots_come_in_and_go_straight_on() -> None:
+    controller = TrafficController(replace(line(4), crossing_s=(5.0, 0.0, 5.0, 5.0)))
+    controller.joins("r1", post="a", home="a", at_home=True, now_s=0.0)
+    assert controller.give("r1", [Goal(3, 5.0, key="far")], 0.0)
+    assert isinstance(controller.claims("r1", "a", "b", 0.0), Granted)
+    assert [lane.end for lane in controller.goes_on("r1", [("b", "c")], 0.0)] == [2]
+    controller.crossed("r1", "a", 5.0)
+    controller.cleared("r1", "a", "b", 105.0)
+    assert controller.next_move("r1", 204.0) == GoOn(line(4).lane(2, 3))
+    assert isinstance(controller.claims("r1", "c", "d", 205.0), Granted)
+    controller.cleared("r1", "b", "c", 206.0)
+    controller.crossed("r1", "c", 211.0)
+    assert controller.comes_in("r1", "d", 310.0) == LetIn(3, at_home=False)
+
+
+def test_a_bay_that_was_passed_where_crossings_are_nobodys_keeps_no_robot_from_coming_in() -> None:
+    controller = TrafficController(replace(line(3), crossing_s=(5.0, 0.0, 5.0)))
+    controller.joins("r1", post="a", home="a", at_home=True, now_s=0.0)
+    assert controller.give("r1", [Goal(2, 5.0, key="here")], 0.0)
+    assert isinstance(controller.claims("r1", "a", "b", 0.0), Granted)
+    assert [lane.end for lane in controller.goes_on("r1", [("b", "c")], 0.0)] == [2]
+    controller.cleared("r1", "a", "b", 105.0)
+    assert controller.comes_in("r1", "c", 205.0) == LetIn(2, at_home=False)
