@@ -37,7 +37,8 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_recording_draws_spurs_and_what_stands_beside_them(tmp_path):
-    scenario = Scenario.model_validate({"title": "track", "limit_s": 1})
+    bays = str(Path(__file__).parents[2] / "bays.toml")
+    scenario = Scenario.model_validate({"title": "track", "limit_s": 1, "map": {"name": bays}})
     with Stage(scenario, tmp_path) as stage, Recorder(tmp_path / "run.gz", stage) as recorder:
         recorder.end(stage.run())
         track = stage.campus.track
