@@ -59,6 +59,11 @@ class Post:
     def point(self) -> Point:
         return Point(self.x_m, self.y_m)
 
+    @property
+    def is_for_passing(self) -> bool:
+        """On a track: it is a bay, and kept neither for one robot nor for robots that charge."""
+        return self.bay_of is not None and not self.homes and self.dock is None
+
 
 @dataclass(frozen=True)
 class Corridor:
@@ -236,7 +241,8 @@ def build_map(file: MapFile) -> CampusMap:
     """The map of a file in whose structure nothing is wrong."""
     points = {post.name: Point(post.x_m, post.y_m) for post in file.post}
     corridors = tuple(_corridor(row, points) for row in file.corridor)
-    posts = {row.name: _post(row, corridors, file.tags()) for row in file.post}
+    tags = file.tags()
+    posts = {row.name: _post(row, corridors, tags) for row in file.post}
     return CampusMap(file.name, file.title, posts, corridors, file.note.strip())
 
 

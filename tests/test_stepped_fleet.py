@@ -1,4 +1,4 @@
-"""Whole robots with the whole service in one stepped world: nobody touches anybody, and the judge would see it."""
+"""Whole robots with the whole service in one stepped world: no body touches another, and the judge would see it."""
 
 import math
 from pathlib import Path
@@ -29,7 +29,7 @@ def test_the_judge_sees_bodies_that_overlap():
 def test_the_judge_sees_a_corridor_that_was_not_granted(granted: set[str], seen: int):
     floor = TrueFloor(TRACK)
     for _ in range(3):
-        floor.look_at_grants({"r1": pose(0.0, 1.0, 2.0)}, {"r1": granted}, set())
+        floor.look_at_grants({"r1": pose(0.0, 1.0, 2.0)}, {"r1": granted})
     assert len(floor.ungranted) == seen
 
 

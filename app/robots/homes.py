@@ -26,8 +26,6 @@ SAME_HOME: Final = "same_home"
 
 WITHOUT_A_HOME: Final = select(Alarm.robot).where(Alarm.name == SAME_HOME, col(Alarm.cleared_at).is_(None))
 """The robots whose home is another's."""
-
-
 GIVEN: Final = "home"
 """In `hello.understands`: the robot takes its home from the service."""
 
@@ -53,7 +51,7 @@ async def check_home(
 
 
 async def note_home(session: AsyncSession, campus: CampusMap, robot: RobotRow, hello: Hello) -> str | None:
-    """Write down its home; return it if the service gives it. Its post is at home for everybody but the traffic."""
+    """Write down its home; return it if the service gives it. For all but the traffic its post is its home."""
     given = None
     if campus.track.home_bays and GIVEN in hello.understands:
         given = await free_home(session, campus, robot.name, _wanted(robot, hello))
@@ -81,7 +79,8 @@ async def no_room(session: AsyncSession, campus: CampusMap, robot: str) -> str |
     """The reason why a robot cannot be enrolled, if the map has no home for it."""
     if not campus.track.home_bays or await free_home(session, campus, robot, ()):
         return None
-    return f"{str(_no_home_left(campus)).capitalize()}."
+    reason = str(_no_home_left(campus))
+    return f"{reason[0].upper()}{reason[1:]}."
 
 
 def _no_home_left(campus: CampusMap) -> NoHomeLeft:

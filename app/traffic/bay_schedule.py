@@ -6,14 +6,14 @@ bay a robot gets is decided here, when it is let in.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Any
 
 from app.traffic.bays import free_bay
 from app.traffic.robot_locations import Hold, RobotLocation, TrafficSnapshot
 from app.traffic.schedule import Elsewhere, HasToWait, Leg, MayEnter, TrafficSchedule, Verdict
-from app.traffic.standing import Standing, bay_ahead, lanes_of, standing
+from app.traffic.standing import bay_ahead, lanes_of, standing
 from fleet.schedule.controller import ComeIn, Denied, GoOn, Granted, LetIn, Waits
 from fleet.schedule.network import Lane
+from fleet.schedule.placing import Place
 
 
 class BayTrafficSchedule(TrafficSchedule):
@@ -31,7 +31,7 @@ class BayTrafficSchedule(TrafficSchedule):
         return before.home_bay != now.home_bay
 
     def _join(self, now: RobotLocation, now_s: float) -> None:
-        self.controller.joins(now.robot, home=now.home, now_s=now_s, **_as_told(standing(self.track, now)))
+        self.controller.joins(now.robot, home=now.home, now_s=now_s, **standing(self.track, now)._asdict())
         self._frozen.discard(now.robot)
 
     def _follow_one(self, before: RobotLocation, now: RobotLocation, now_s: float) -> None:
@@ -45,7 +45,7 @@ class BayTrafficSchedule(TrafficSchedule):
         # A grant alone is no news of where it is.
         if now.occupies and now.occupies != before.occupies and now.occupies.kind != "crossing":
             self.controller.crossed(now.robot, where.post, now_s)
-        if not self.controller.is_at(now.robot, home=now.home, **_as_told(where)):
+        if not self.controller.is_at(now.robot, where, now.home):
             self._join(now, now_s)
 
     # What follows.
@@ -62,7 +62,7 @@ class BayTrafficSchedule(TrafficSchedule):
             if verdict is not None:
                 yield verdict
 
-    def _asked(self, one: RobotLocation, where: Standing, now_s: float) -> Verdict | None:
+    def _asked(self, one: RobotLocation, where: Place, now_s: float) -> Verdict | None:
         assert one.request is not None  # noqa: S101  # only those are asked
         if where.rests:
             return self._out_of_bay(one, where, now_s)
@@ -72,7 +72,7 @@ class BayTrafficSchedule(TrafficSchedule):
             return self._off_the_crossing(one, where, now_s)
         return None
 
-    def _out_of_bay(self, one: RobotLocation, where: Standing, now_s: float) -> Verdict | None:
+    def _out_of_bay(self, one: RobotLocation, where: Place, now_s: float) -> Verdict | None:
         """Out of the bay, over the crossing, into the corridor; or to its own home at the same post."""
         assert one.request is not None and one.occupies is not None  # noqa: S101
         bay, post = one.occupies.place, where.post
@@ -120,7 +120,7 @@ class BayTrafficSchedule(TrafficSchedule):
             return MayEnter(one.robot, ((post, bay),), aside=self._is_lane(asked))
         return self._waits(one, asked, let_in, now_s)
 
-    def _off_the_crossing(self, one: RobotLocation, where: Standing, now_s: float) -> Verdict:
+    def _off_the_crossing(self, one: RobotLocation, where: Place, now_s: float) -> Verdict:
         """It could not get into its bay, or was put on the crossing: into another bay, which is kept for it."""
         assert one.request is not None  # noqa: S101  # only those are asked
         bay = self._bay_at(one, where.post, at_home=where.at_home) or self._bay_at(one, where.post, at_home=False)
@@ -153,14 +153,3 @@ class BayTrafficSchedule(TrafficSchedule):
 
     def _names(self, lane: Lane) -> Leg:
         return self._post(lane.start), self._post(lane.end)
-
-
-def _as_told(where: Standing) -> dict[str, Any]:
-    return {
-        "post": where.post,
-        "at_home": where.at_home,
-        "towards": where.towards,
-        "on_crossing": where.on_crossing,
-        "to_home": where.to_home,
-        "is_let_in": where.is_let_in,
-    }

@@ -11,7 +11,7 @@ def free_bay(
 ) -> str | None:
     """The first bay of a post for passing that is no other robot's, and whose spur no robot found closed."""
     taken = {bay for other in all_robots if other.robot != robot.robot for bay in bays_of(track, other)}
-    passing = [bay.name for bay in track.bays_of(post) if not bay.homes and bay.dock is None]
+    passing = [bay.name for bay in track.bays_of(post) if bay.is_for_passing]
     return next((bay for bay in passing if bay not in taken and corridor_name(post, bay) not in closed), None)
 
 

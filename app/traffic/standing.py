@@ -1,34 +1,13 @@
 """Where a robot is in the schedule's words, from its reports and from what it was granted on the track."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from app.traffic.robot_locations import Hold, RobotLocation
+from fleet.schedule.placing import Place
 from maps import CampusMap, corridor_name
 
 
-@dataclass(frozen=True)
-class Standing:
-    """As `TrafficController.joins` takes it: see there."""
-
-    post: str
-    at_home: bool = False
-    towards: tuple[str, ...] = ()
-    on_crossing: bool = False
-    to_home: bool = False
-    is_let_in: bool = False
-
-    @property
-    def rests(self) -> bool:
-        return not (self.towards or self.on_crossing)
-
-    @property
-    def waits_before(self) -> str | None:
-        """The post at the end of its corridor, over which it has no way on yet."""
-        return self.towards[-1] if self.towards and not self.is_let_in else None
-
-
-def standing(track: CampusMap, one: RobotLocation) -> Standing:
+def standing(track: CampusMap, one: RobotLocation) -> Place:
     """Of a robot that has reported what it occupies."""
     assert one.occupies is not None  # noqa: S101  # others have no place on a map with bays
     match one.occupies.kind:
@@ -50,22 +29,22 @@ def bay_ahead(track: CampusMap, one: RobotLocation, post: str) -> str | None:
     return next((bay for bay in bays if one.occupies is None or bay != one.occupies.place), None)
 
 
-def _in_bay(track: CampusMap, one: RobotLocation, bay: str) -> Standing:
+def _in_bay(track: CampusMap, one: RobotLocation, bay: str) -> Place:
     post, at_home = track.address_of(bay), bay == one.home_bay
     if towards := tuple(_chain(track, one, post)):
-        return Standing(post, at_home, towards, on_crossing=True, to_home=_to_home(track, one, towards))
+        return Place(post, at_home, towards, on_crossing=True, to_home=_to_home(track, one, towards))
     other = bay_ahead(track, one, post)
-    return Standing(post, at_home, on_crossing=other is not None, to_home=other is not None and other == one.home_bay)
+    return Place(post, at_home, on_crossing=other is not None, to_home=other is not None and other == one.home_bay)
 
 
-def _on_crossing(track: CampusMap, one: RobotLocation, post: str) -> Standing:
+def _on_crossing(track: CampusMap, one: RobotLocation, post: str) -> Place:
     if towards := tuple(_chain(track, one, post)):
-        return Standing(post, False, towards, on_crossing=True, to_home=_to_home(track, one, towards))
+        return Place(post, False, towards, on_crossing=True, to_home=_to_home(track, one, towards))
     bay = bay_ahead(track, one, post)
-    return Standing(post, bay is not None and bay == one.home_bay, on_crossing=True)
+    return Place(post, bay is not None and bay == one.home_bay, on_crossing=True)
 
 
-def _in_corridor(track: CampusMap, one: RobotLocation, behind: str, ahead: str) -> Standing:
+def _in_corridor(track: CampusMap, one: RobotLocation, behind: str, ahead: str) -> Place:
     """Turned round, or where it was not granted, it comes to the other end all the same. Out of what it was granted it
     is on the crossing, and says so next."""
     inside = corridor_name(behind, ahead)
@@ -75,7 +54,7 @@ def _in_corridor(track: CampusMap, one: RobotLocation, behind: str, ahead: str) 
     if towards[:1] != (ahead,):
         towards = (ahead,)
     is_let_in = bay_ahead(track, one, towards[-1]) is not None
-    return Standing(behind, False, towards, to_home=_to_home(track, one, towards), is_let_in=is_let_in)
+    return Place(behind, False, towards, to_home=_to_home(track, one, towards), is_let_in=is_let_in)
 
 
 def _chain(track: CampusMap, one: RobotLocation, start: str) -> Iterator[str]:

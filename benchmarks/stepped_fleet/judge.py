@@ -1,4 +1,4 @@
-"""The judge: overlapping bodies, corridors entered without a grant, and who stands for ever; by true poses alone."""
+"""The judge: overlapping bodies, and corridors entered without a grant; places are true poses alone."""
 
 import math
 from collections.abc import Mapping
@@ -12,12 +12,11 @@ from robot.simulated.true_poses import TruePose
 
 CROSSING_M: Final = 0.4
 IN_LINE_M: Final = 0.15
-STUCK_S: Final = 3600.0
 
 
 @dataclass
 class TrueFloor:
-    """`granted`: as the database has it, robot → corridors and spurs of the track, by name."""
+    """All robots of one run."""
 
     track: CampusMap
     collisions: CollisionJudge = field(default_factory=CollisionJudge)
@@ -49,11 +48,12 @@ class TrueFloor:
         else:
             self.longest_on_crossing_s = max(self.longest_on_crossing_s, pose.time_s - since_s)
 
-    def look_at_grants(self, poses: Mapping[str, TruePose], granted: Mapping[str, set[str]], carried: set[str]) -> None:
+    def look_at_grants(self, poses: Mapping[str, TruePose], granted: Mapping[str, set[str]]) -> None:
+        """`granted`: as the database has it, robot → corridors and spurs of the track, by name."""
         for name, pose in poses.items():
             corridor = self._corridor(pose)
             entered, self._in[name] = corridor != self._in.get(name), corridor
-            if entered and corridor and name not in carried and corridor not in granted.get(name, ()):
+            if entered and corridor and corridor not in granted.get(name, ()):
                 self.ungranted.append(f"{name} in {corridor} at {pose.time_s:.0f} s")
 
     def _corridor(self, pose: TruePose) -> str | None:

@@ -1,7 +1,7 @@
 """A robot's daemon on simulated time: switched on, killed, and switched on again on what it left on its disk."""
 
 import asyncio
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from heapq import heapify, heapreplace
 from pathlib import Path
@@ -58,7 +58,6 @@ class SteppedRobot:
     link: DaemonLink | None = None
     kills: int = 0
     stands_since_s: float | None = None
-    carried: bool = False
     _due: list[tuple[float, int]] = field(default_factory=list)
     _loops: tuple[Loop, ...] = ()
     _talk: asyncio.Task[None] | None = None
@@ -131,6 +130,3 @@ class SteppedRobot:
         """The tunes since the last call."""
         self._songs, tunes = self.body.tunes_since(self._songs)
         yield from (NAMES.get(tune, "?") for tune in tunes)
-
-
-Make = Callable[[str, str], SteppedRobot]

@@ -127,7 +127,7 @@ class Run:
                     if task.done():
                         task.result()
                 await bystanders.tick(self.robots, clock.now())
-                floor.look_at_grants(poses, await _granted(service), set())
+                floor.look_at_grants(poses, await _granted(service))
 
     async def _befalls(self, one: SteppedRobot) -> None:
         rng = Random(f"{self.seed} {one.name} fate")

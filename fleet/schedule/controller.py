@@ -105,21 +105,9 @@ class TrafficController:
         self._robots[robot] = Participant(home_number, start, before.goals if before else ())
         self._live.plan_all(now_s)
 
-    def is_at(
-        self,
-        robot: str,
-        *,
-        post: str,
-        home: str | None,
-        at_home: bool,
-        towards: Sequence[str] = (),
-        on_crossing: bool = False,
-        to_home: bool = False,
-        is_let_in: bool = False,
-    ) -> bool:
-        """Tell if this robot is known to be there: see `joins`. Which place at a post it leaves or comes to is not
-        compared but where it stands in it."""
-        place = Place(post, at_home, tuple(towards), on_crossing, to_home, is_let_in)
+    def is_at(self, robot: str, place: Place, home: str | None) -> bool:
+        """Tell if this robot is known to be there. Which place at a post it leaves or comes to is not compared but
+        where it stands in it."""
         home_number = None if home is None else self._whole.number_of(home)
         return is_same(self._robots[robot].start, start_at(self._whole, place, home_number, lambda _: False, 0.0))
 

@@ -9,14 +9,23 @@ from fleet.schedule.under_way import aside, further, is_on, placed
 
 
 class Place(NamedTuple):
-    """As `TrafficController.joins` has it."""
+    """Where a robot says to be: see `TrafficController.joins`."""
 
     post: str
-    at_home: bool
-    towards: tuple[str, ...]
-    on_crossing: bool
-    to_home: bool
-    is_let_in: bool
+    at_home: bool = False
+    towards: tuple[str, ...] = ()
+    on_crossing: bool = False
+    to_home: bool = False
+    is_let_in: bool = False
+
+    @property
+    def rests(self) -> bool:
+        return not (self.towards or self.on_crossing)
+
+    @property
+    def waits_before(self) -> str | None:
+        """The post at the end of its corridor, over which it has no way on yet."""
+        return self.towards[-1] if self.towards and not self.is_let_in else None
 
 
 def start_at(whole: Network, place: Place, home: int | None, is_full: Callable[[int], bool], now_s: float) -> Start:

@@ -36,7 +36,7 @@ def bay_for(track: CampusMap, post: str, home: str | None, granted: Sequence[Leg
         return allowed[-1]
     if home in bays:
         return home
-    passing = [bay for bay in bays if not (track.post(bay).homes or track.post(bay).dock)] or list(bays)
+    passing = [bay for bay in bays if track.post(bay).is_for_passing] or list(bays)
     return next((bay for bay in passing if corridor_name(post, bay) not in avoided), passing[0])
 
 
