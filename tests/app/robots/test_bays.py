@@ -9,9 +9,9 @@ from websockets.exceptions import ConnectionClosed
 
 from app.core.settings import Settings
 from app.models import Alarm, OccupancyRow, RobotRow
-from app.robots.corridors.occupancies import forget_occupancy
 from app.robots.enrolment.errors import NoHomeForRobot
-from app.robots.service import revoke_tokens
+from app.robots.service import known_robot, revoke_tokens
+from app.traffic.out_of_service import take_out
 from protocol.both_ways import Error
 from protocol.clock import SteppedClock
 from protocol.parts import Leg
@@ -109,8 +109,12 @@ async def test_a_person_who_has_looked_frees_what_a_robot_occupied(service: Serv
         await robot.greet("post1_bay1", home="post5_bay2")
         await robot.say(occupies(robot, "bay", "post1_bay1"))
         await until(lambda: service.rows(OccupancyRow))
-    async with service.app.state.parts.database.transaction() as session:
-        await forget_occupancy(session, "r1")
+    await until(lambda: service.rows(RobotRow, online=False))
+    parts = service.app.state.parts
+    async with parts.database.transaction() as session:
+        by = await parts.sign_in_service.person(session, "dan@campus.example", parts.clock.utc())
+        row = await known_robot(session, "r1", to_change=True)
+        await take_out(session, parts.fleet, row, "Carried into the workshop.", by)
     assert await service.rows(OccupancyRow) == []
 
 

@@ -2,12 +2,17 @@
 
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 from typing import Final
+
+import pytest
 
 from app.core.settings import Settings
 from app.traffic.bay_schedule import BayTrafficSchedule
+from app.traffic.bays import free_bay
+from app.traffic.reopening import corridor_on
 from app.traffic.robot_locations import Hold, Occupied, ReservationRequest, RobotLocation, TrafficSnapshot
-from app.traffic.schedule import MayEnter, Verdict
+from app.traffic.schedule import Elsewhere, MayEnter, Verdict
 from maps import find_map
 from tests.app.traffic.bay_travelling import MAP
 
@@ -76,3 +81,73 @@ def test_who_has_left_its_corridor_is_on_the_crossing_also_before_it_says_so(set
     beyond = replace(out, occupies=Occupied("corridor", "post3", "post5"))
     assert [one.robot for one in verdicts(settings, there, (out, asking), (beyond, asking))] == ["r2"]
     assert isinstance(verdicts(settings, there, (out, asking), (beyond, asking))[0], MayEnter)
+
+
+OTHER: Final = replace(
+    GUEST,
+    robot="r2",
+    post="post5",
+    home="post4",
+    home_bay="post4_bay2",
+    goals=(("next", "post4"),),
+    holds=(Hold("post5", "post3", 7),),
+    occupies=Occupied("corridor", "post5", "post3"),
+)
+"""In the corridor before post3, on its way home to post4."""
+ASKS_ON: Final = asks(OTHER, "post4", "post3", "post4", "post4_bay2")
+
+
+def may_enter(settings: Settings, *pictures: tuple[RobotLocation, ...]) -> list[str]:
+    return [one.robot for one in verdicts(settings, *pictures) if isinstance(one, MayEnter)]
+
+
+OUT: Final = Hold("post3_bay1", "post3", 1), Hold("post3", "post2", 2)
+
+
+@pytest.mark.parametrize("news", [1, 3], ids=["at once", "later"])
+def test_a_crossing_is_a_robots_until_it_says_to_be_beyond(settings: Settings, news: int) -> None:
+    """From the grant on, however often the service looks, and after it has been started anew."""
+    leaves = replace(GUEST, post="post3", goals=(("next", "post2"),), occupies=Occupied("bay", "post3_bay1"), holds=OUT)
+    assert may_enter(settings, *[(leaves, ASKS_ON)] * news) == []
+    on_it = replace(leaves, occupies=Occupied("crossing", "post3"), holds=OUT[1:])
+    assert may_enter(settings, *[(on_it, ASKS_ON)] * news) == []
+    beyond = replace(on_it, occupies=Occupied("corridor", "post3", "post2"))
+    assert may_enter(settings, (on_it, ASKS_ON), (beyond, ASKS_ON)) == ["r2"]
+
+
+def test_a_crossing_is_a_robots_that_comes_in_until_it_is_in_its_bay(settings: Settings) -> None:
+    into = (Hold("post3", "post3_bay1", 3),)
+    comes = replace(GUEST, post="post3", goals=(("stop", "post3"),), occupies=Occupied("crossing", "post3"), holds=into)
+    assert may_enter(settings, (comes, ASKS_ON)) == []
+    assert may_enter(settings, (comes, ASKS_ON), (comes, ASKS_ON)) == []
+    stands = replace(comes, occupies=Occupied("bay", "post3_bay1"), holds=())
+    assert may_enter(settings, (comes, ASKS_ON), (stands, ASKS_ON)) == ["r2"]
+
+
+def test_one_before_a_crossing_on_which_another_stands_still_is_sent_back(settings: Settings) -> None:
+    into = (Hold("post3", "post3_bay1", 3),)
+    dead = replace(GUEST, post="post3", occupies=Occupied("crossing", "post3"), holds=into, stopped=True)
+    (verdict,) = verdicts(settings, (dead, ASKS_ON))
+    assert verdict == Elsewhere("r2", ("post5", "post3"))
+
+
+@pytest.mark.parametrize(
+    ("other", "free"),
+    [
+        (replace(GUEST, robot="r2", occupies=Occupied("bay", "post4_bay1")), "post4_bay2"),
+        (replace(GUEST, robot="r2", holds=(Hold("post4", "post4_bay1"),), occupies=None), "post4_bay2"),
+        (replace(GUEST, robot="r2", holds=(Hold("post4_bay1", "post4"),), occupies=None), "post4_bay2"),
+        (replace(GUEST, robot="r2", occupies=Occupied("bay", "post3_bay1")), "post4_bay1"),
+    ],
+    ids=["stands in it", "was let into it", "comes out of it", "elsewhere"],
+)
+def test_a_bay_is_given_that_is_no_other_robots(tmp_path: Path, other: RobotLocation, free: str) -> None:
+    path = tmp_path / "two_bays.toml"
+    path.write_text(MAP.read_text().replace("bearing_deg = 270.0\nhome = true", "bearing_deg = 270.0"))
+    track = find_map(path).track
+    assert free_bay(track, "post4", GUEST, [GUEST, other], frozenset()) == free
+    assert free_bay(track, "post4", GUEST, [GUEST], frozenset({"post4-post4_bay1"})) == "post4_bay2"
+
+
+def test_a_spur_that_a_robot_found_blocked_can_be_opened() -> None:
+    assert corridor_on(find_map(MAP), "post4-post4_bay1").b == "post4_bay1"

@@ -9,7 +9,8 @@ from protocol.parts import Leg
 from robot.localization.bays import Occupied, bay_for, evidence_of, occupied, places_to_stand
 from robot.localization.place import AtPost, Between, Coming, Leaving, Place, Unknown
 
-TRACK = find_map(Path(__file__).parents[2] / "bays.toml").track
+MAP = Path(__file__).parents[2] / "bays.toml"
+TRACK = find_map(MAP).track
 CORRIDOR = TRACK.corridor("post2", "post3")
 SPUR = TRACK.corridor("post3", "post3_bay1")
 OUTWARDS = Between(CORRIDOR, "post2", "post3", 1000.0, 3000.0)
@@ -63,3 +64,11 @@ def test_the_evidence_is_what_told_its_place_last():
     assert evidence_of(AtPost("post4_bay1", 0.0, 0.0, by_marker=False), 0.0) == ("map", None)
     assert evidence_of(AtPost("post5_bay2", 0.0, 0.0, docked=True), 0.0) == ("dock", None)
     assert evidence_of(OUTWARDS, 1451.6) == ("distance", 452)
+
+
+def test_a_bay_that_it_found_blocked_is_left_for_the_next_one(tmp_path: Path):
+    path = tmp_path / "two_bays.toml"
+    path.write_text(MAP.read_text().replace("bearing_deg = 270.0\nhome = true", "bearing_deg = 270.0"))
+    track = find_map(path).track
+    assert bay_for(track, "post4", None, (), frozenset()) == "post4_bay1"
+    assert bay_for(track, "post4", None, (), frozenset({"post4-post4_bay1"})) == "post4_bay2"

@@ -350,11 +350,13 @@ def test_what_was_granted_is_void_once_and_for_all_when_others_have_got_it(desk:
     first = desk.missions.claims.ask((TO_POST3, TO_POST4)) or ""
     desk.hears(Grant(claim_id=first, legs=(TO_POST3, TO_POST4)))
     revoke = Revoke(command_id="v1", reason="carried into the workshop")
+    desk.missions.occupancy.report("bay", "post4_bay1", None, "marker")
     fault, answer = desk.hears(revoke)
     assert (fault["name"], answer["command_id"], answer["accepted"]) == ("revoked", "v1", True)
     assert (desk.missions.stop_asked, desk.missions.forget_place_asked) == (True, True)
     again = again_of(store)
     assert (again.held.revoked, again.held.grants, again.held.position.post) == (True, (), None), "after a restart, too"
+    assert again.occupancy.report("bay", "post4_bay1", None, "marker"), "wherever it stands is news"
     second = desk.missions.claims.ask((TO_POST3,)) or ""
     desk.hears(Grant(claim_id=second, legs=(TO_POST3,)))
     assert desk.hears(revoke) == [], "the same one again"

@@ -1,19 +1,48 @@
 """On a map with bays: what a robot asks for out of a bay and before a crossing, and where the answer sends it."""
 
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
 
 from maps import find_map
+from maps.campus_map import build_map
+from maps.map_file import load_map_file
+from maps.scaling import scaled
+from protocol.envelope import Envelope, type_of
 from protocol.parts import Leg
 from protocol.to_robot import Deny, Detour, Grant
 from protocol.to_server import Claim
 from robot.agent.actions.corridors import AskAhead, detour
 from robot.agent.navigator import Navigator
+from robot.mission.memory import Incoming
 from robot.mission.store import Store
-from tests.robot.agent.actions.bench import Bench, with_server
+from tests.robot.agent.actions.bench import MISSION, NOW, Bench
 
-TRACK = find_map(Path(__file__).parents[3] / "bays.toml").track
+MAP = Path(__file__).parents[3] / "bays.toml"
+TRACK = find_map(MAP).track
+
+
+@dataclass
+class Server:
+    """The link, with what has come over it."""
+
+    online: bool = True
+    waiting: list[Incoming] = field(default_factory=list)
+
+    def incoming(self) -> list[Incoming]:
+        taken, self.waiting = self.waiting, []
+        return taken
+
+    def wake(self) -> None:
+        pass
+
+
+class BayBench(Bench):
+    """The bench on the track with bays."""
+
+    server: Server
 
 
 def leg(from_post: str, to_post: str) -> Leg:
@@ -21,11 +50,14 @@ def leg(from_post: str, to_post: str) -> Leg:
 
 
 @pytest.fixture
-def bay_bench(store: Store) -> Bench:
-    bench = Bench(store)
+def bay_bench(tmp_path: Path) -> Iterator[BayBench]:
+    store = Store(tmp_path / "robot.db")
+    bench = BayBench(store)
     bench.navigator = bench.hands.navigator = Navigator(TRACK, "post5_bay2", bench.missions, now=0.0)
-    with_server(bench)
-    return bench
+    bench.server = Server()
+    bench.missions.join(bench.server)
+    yield bench
+    store.close()
 
 
 def claims(bench: Bench) -> list[Claim]:
@@ -33,15 +65,14 @@ def claims(bench: Bench) -> list[Claim]:
     return [message for message in messages if isinstance(message, Claim)]
 
 
-def answered(bench: Bench, answer: Grant | Detour | Deny) -> None:
-    """As memory and mission take it in."""
-    memory = bench.missions.memory
-    if isinstance(answer, Grant | Detour):
-        memory.grant(answer.legs)
-    if isinstance(answer, Detour):
-        memory.turn_aside(answer.legs[-1])
-    bench.missions.claims.hear(answer)
-    bench.missions._changed()
+def answered(bench: BayBench, answer: Grant | Detour | Deny) -> None:
+    """It is received, and acted on at the next tick."""
+    memory, seq = bench.missions.memory, bench.missions.memory.received().seq + 1
+    if seq == 1:
+        memory.resume("j", 1)
+    memory.receive(Envelope(type=type_of(answer), robot="r1", journal="j", seq=seq, at=NOW, body=answer))
+    bench.server.waiting += [one for one in memory.unhandled() if one.seq == seq]
+    bench.missions.take_messages()
 
 
 def in_corridor(bench: Bench, here: str, towards: str) -> None:
@@ -49,7 +80,7 @@ def in_corridor(bench: Bench, here: str, towards: str) -> None:
     bench.navigator.leave()
 
 
-def test_out_of_a_bay_it_goes_only_together_with_what_comes_after_the_crossing(bay_bench: Bench) -> None:
+def test_out_of_a_bay_it_goes_only_together_with_what_comes_after_the_crossing(bay_bench: BayBench) -> None:
     bay_bench.navigator.place("post4_bay1", "post4")
     bay_bench.ask("claim(post3)")
     (asked,) = claims(bay_bench)
@@ -61,7 +92,7 @@ def test_out_of_a_bay_it_goes_only_together_with_what_comes_after_the_crossing(b
     assert [failure for _, failure in bay_bench.actions.finished(0.0)] == [None]
 
 
-def test_on_a_crossing_it_asks_for_nothing_beyond_the_corridor_that_it_may_enter(bay_bench: Bench) -> None:
+def test_on_a_crossing_it_asks_for_nothing_beyond_the_corridor_that_it_may_enter(bay_bench: BayBench) -> None:
     """What it asked for here would be kept from others for as long as it takes through the corridor."""
     bay_bench.navigator.place("post3", "post4")
     bay_bench.missions.memory.grant((leg("post3", "post4"),))
@@ -71,7 +102,7 @@ def test_on_a_crossing_it_asks_for_nothing_beyond_the_corridor_that_it_may_enter
     assert claims(bay_bench) == []
 
 
-def test_on_its_way_it_asks_once_for_what_comes_after_the_crossing_ahead(bay_bench: Bench) -> None:
+def test_on_its_way_it_asks_once_for_what_comes_after_the_crossing_ahead(bay_bench: BayBench) -> None:
     in_corridor(bay_bench, "post2", "post3")
     bay_bench.navigator.destination = "post4"
     ask = AskAhead(bay_bench.hands)
@@ -84,7 +115,7 @@ def test_on_its_way_it_asks_once_for_what_comes_after_the_crossing_ahead(bay_ben
     assert bay_bench.navigator.may_cross()
 
 
-def test_what_it_holds_of_the_corridor_that_it_is_in_lets_it_not_back_over_the_post(bay_bench: Bench) -> None:
+def test_what_it_holds_of_the_corridor_that_it_is_in_lets_it_not_back_over_the_post(bay_bench: BayBench) -> None:
     in_corridor(bay_bench, "post2", "post3")
     answered(bay_bench, Grant(claim_id="c1", legs=(leg("post2", "post3"),)))
     bay_bench.navigator.turned()
@@ -92,7 +123,7 @@ def test_what_it_holds_of_the_corridor_that_it_is_in_lets_it_not_back_over_the_p
     assert not bay_bench.navigator.may_cross()
 
 
-def test_before_a_crossing_it_waits_until_it_may_drive_on(bay_bench: Bench) -> None:
+def test_before_a_crossing_it_waits_until_it_may_drive_on(bay_bench: BayBench) -> None:
     in_corridor(bay_bench, "post2", "post3")
     bay_bench.navigator.destination = "post4"
     bay_bench.ask("wait_to_cross")
@@ -102,7 +133,7 @@ def test_before_a_crossing_it_waits_until_it_may_drive_on(bay_bench: Bench) -> N
     assert [failure for _, failure in bay_bench.actions.finished(0.0)] == [None]
 
 
-def test_refused_the_way_on_it_asks_for_a_bay_of_the_post_ahead(bay_bench: Bench) -> None:
+def test_refused_the_way_on_it_asks_for_a_bay_of_the_post_ahead(bay_bench: BayBench) -> None:
     in_corridor(bay_bench, "post2", "post3")
     bay_bench.navigator.destination = "post4"
     bay_bench.ask("wait_to_cross")
@@ -113,7 +144,7 @@ def test_refused_the_way_on_it_asks_for_a_bay_of_the_post_ahead(bay_bench: Bench
     assert claims(bay_bench)[-1].legs == (leg("post3", "post3_bay1"),)
 
 
-def test_refused_the_corridor_that_it_is_in_it_turns_back(bay_bench: Bench) -> None:
+def test_refused_the_corridor_that_it_is_in_it_turns_back(bay_bench: BayBench) -> None:
     in_corridor(bay_bench, "post2", "post3")
     bay_bench.navigator.destination = "post4"
     bay_bench.ask("wait_to_cross")
@@ -123,7 +154,7 @@ def test_refused_the_corridor_that_it_is_in_it_turns_back(bay_bench: Bench) -> N
     assert [failure for _, failure in bay_bench.actions.finished(0.0)] == ["turn_back"]
 
 
-def test_sent_elsewhere_out_of_a_bay_it_goes_where_the_last_leg_leads(bay_bench: Bench) -> None:
+def test_sent_elsewhere_out_of_a_bay_it_goes_where_the_last_leg_leads(bay_bench: BayBench) -> None:
     bay_bench.navigator.place("post3_bay1", "post3")
     bay_bench.ask("claim(post4)")
     (asked,) = claims(bay_bench)
@@ -133,7 +164,7 @@ def test_sent_elsewhere_out_of_a_bay_it_goes_where_the_last_leg_leads(bay_bench:
     assert [failure for _, failure in bay_bench.actions.finished(0.0)] == [None]
 
 
-def test_the_bay_that_it_was_granted_is_the_one_it_goes_to(bay_bench: Bench) -> None:
+def test_the_bay_that_it_was_granted_is_the_one_it_goes_to(bay_bench: BayBench) -> None:
     bay_bench.navigator.place("post4", "post3")
     bay_bench.ask("claim(post4)")
     (asked,) = claims(bay_bench)
@@ -142,12 +173,39 @@ def test_the_bay_that_it_was_granted_is_the_one_it_goes_to(bay_bench: Bench) -> 
     assert bay_bench.navigator.bay_for("post4") == "post4_bay2"
 
 
-def test_in_any_bay_of_its_destination_it_has_arrived(bay_bench: Bench) -> None:
+def test_in_any_bay_of_its_destination_it_has_arrived(bay_bench: BayBench) -> None:
     bay_bench.navigator.place("post4_bay2", None)
     bay_bench.navigator.destination = "post4"
     assert bay_bench.navigator.way() == "arrived"
 
 
-def test_reports_name_the_post_of_a_bay(bay_bench: Bench) -> None:
+def test_reports_name_the_post_of_a_bay(bay_bench: BayBench) -> None:
     bay_bench.navigator.place("post4_bay2", None)
     assert bay_bench.hands.place == "post4"
+
+
+def test_far_from_a_crossing_it_asks_for_nothing_yet(bay_bench: BayBench) -> None:
+    """Else the crossing would be kept from others for all the time that it takes there."""
+    long_ways = build_map(scaled(load_map_file(MAP), 5.0)).track
+    bay_bench.navigator = bay_bench.hands.navigator = Navigator(long_ways, "post5_bay2", bay_bench.missions, now=0.0)
+    in_corridor(bay_bench, "post2", "post3")
+    bay_bench.navigator.destination = "post4"
+    AskAhead(bay_bench.hands)()
+    assert claims(bay_bench) == []
+
+
+def test_out_of_a_bay_it_has_passed_no_post(bay_bench: BayBench) -> None:
+    bay_bench.missions.give(MISSION)
+    before = len(bay_bench.told())
+    in_corridor(bay_bench, "post4_bay1", "post4")
+    bay_bench.navigator.reached("post4", unread=True)
+    bay_bench.ask("report(passed,s2)")
+    assert not [text for text in bay_bench.told()[before:] if '"passed"' in text]
+
+
+def test_in_the_hands_of_a_person_it_forgets_what_it_has_reported(bay_bench: BayBench) -> None:
+    """Put down in the same bay it has to say so anew: the service may have been told otherwise."""
+    bay_bench.missions.occupies("bay", "post4_bay1", None, "marker", None)
+    bay_bench.navigator.lose_place(bay_bench.hands.view)
+    bay_bench.missions.occupies("bay", "post4_bay1", None, "marker", None)
+    assert sum('"post4_bay1"' in text and '"evidence"' in text for text in bay_bench.told()) == 2
