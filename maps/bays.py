@@ -54,7 +54,7 @@ class Bay:
     """A spur of tape off `post`: its bearing from there, its length, and the place of the axle of a robot in it.
 
     `home`: it is kept for the robot whose home it is; `tag`: see `maps.tags`. One with a dock that is no home is kept
-    for robots that charge; all others are for everybody.
+    for robots that charge; all others are for every robot.
     """
 
     name: str

@@ -84,7 +84,7 @@ def _touches(line: Line, lines: tuple[Line, ...]) -> Iterator[Problem]:
 
 
 def _too_near(one: Line, other: Line) -> Iterator[Problem]:
-    """Of two lines without a post in common nobody holds a crossing for both."""
+    """Of two lines without a post in common no robot holds a crossing for both."""
     if one.posts & other.posts or one.is_far_from(other.box, CLEAR_M):
         return
     gap_m = distance_between_paths_m(one.path, other.path)

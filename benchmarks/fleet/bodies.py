@@ -100,7 +100,7 @@ class Floor:
             floor.records[name] = Record(body.place.post, body.place.what == "home", goals=body.goals)
             floor._joins(name)
         for name, body in bodies.items():
-            assert controller.give(name, body.goals, 0.0), "everybody comes home, so that work can be taken on"
+            assert controller.give(name, body.goals, 0.0), "all robots come home, so that work can be taken on"
         return floor
 
     # What can happen.

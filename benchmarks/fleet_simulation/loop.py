@@ -14,7 +14,7 @@ Answer = TypeVar("Answer")
 
 
 class NothingHappensError(RuntimeError):
-    """Everybody waits for somebody else, and no time limit ends it."""
+    """Every task waits for another, and no time limit ends it."""
 
 
 class _Leaps(selectors.BaseSelector):
@@ -43,7 +43,7 @@ class _Leaps(selectors.BaseSelector):
 
 
 class SimulatedLoop(asyncio.SelectorEventLoop):
-    """Time passes only while nobody has anything to do. Work for threads is done at once, at no time."""
+    """Time passes only while no task has anything to do. Work for threads is done at once, at no time."""
 
     def __init__(self) -> None:
         self._leaps = _Leaps()

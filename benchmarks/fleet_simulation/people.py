@@ -55,11 +55,11 @@ class People:
 
     async def order(self, from_post: str, to_post: str) -> None:
         assert self._sender is not None
-        wish = NewOrder(from_post=from_post, to_post=to_post, recipient=RECIPIENT)
+        request = NewOrder(from_post=from_post, to_post=to_post, recipient=RECIPIENT)
         placing = self.parts.orders.placing
         async with self.parts.database.transaction() as session:
-            known = await look_up_people(session, wish.addresses)
-            draft = await placing.draft(session, self._sender, wish, known)
+            known = await look_up_people(session, request.addresses)
+            draft = await placing.draft(session, self._sender, request, known)
             await placing.write(session, [draft])
         order_id = draft.facts.order.id
         self.letters[order_id], self.placed_s[order_id] = WITH_SENDER, self.now_s
@@ -76,7 +76,7 @@ class People:
         return self.taking.person_s(purpose, self.now_s, self.rng)
 
     def show(self, robot: str, order_id: str, purpose: Purpose) -> ShownCode:
-        """The code that opens. The letter changes hands then, whatever anybody says of it."""
+        """The code that opens. The letter changes hands then, whatever is said of it."""
         before = self.letters[order_id]
         if purpose is Purpose.LOAD:
             assert before == WITH_SENDER, f"{robot} is given {order_id}, which is in {before}"

@@ -34,7 +34,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """How often the service looks at what nobody has told it of, and how long it rests between two looks, in seconds.
+    """How often the service looks at what it is not notified of, and how long it rests between two looks, in seconds.
     None: as shipped. What wakes it wakes it at once in any case."""
 
     traffic_s: tuple[float, float] | None = None

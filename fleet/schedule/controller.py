@@ -12,7 +12,7 @@
 
 What a robot holds is free again when it reports that it is elsewhere, and not before: the crossing and the bay that it
 leaves with `crossed`, a corridor with `cleared` (or `crossed`, if that is what is heard). No grant, no time and no
-question frees anything. Reports may come twice. Where the crossing of a post takes no time it is nobody's: a bay is
+question frees anything. Reports may come twice. Where the crossing of a post takes no time no robot holds it: a bay is
 left with the grant, `cleared` says that the robot stands at the end, and `crossed` and `comes_in` are not needed.
 
 In memory and pure: what it knows can be built again from the grants, the places and the goals of all robots.

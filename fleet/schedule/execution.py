@@ -161,7 +161,7 @@ def in_turn(tasks: Mapping[str, Task], journeys: Mapping[str, Journey]) -> dict[
 
 
 def standing_in_turn(network: Network, tasks: Mapping[str, Task]) -> dict[str, Task]:
-    """The same when there is no schedule: everybody comes in where it is let in, first come, first served."""
+    """The same when there is no schedule: each robot comes in where it is let in, first come, first served."""
     journeys = {robot: Journey((standing(task.start),), (), task.start.ready_s) for robot, task in tasks.items()}
     still = {robot: Task(task.start, (), task.home) for robot, task in tasks.items()}
     return in_turn(tasks, retimed(network, still, journeys))

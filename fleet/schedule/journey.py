@@ -22,7 +22,8 @@ class Through(NamedTuple):
     not stop in. `lane` None: it is through, or began there. `at_home`: beside the bays.
 
     `over_s`: how long it takes over the crossing of the post, which it begins at `arrives_s`. Crossing and bay are its
-    own until it is over. 0.0: the crossing is nobody's, and the bay its own until it is through the next corridor."""
+    own until it is over. 0.0: no robot holds the crossing, and the bay is its own until it is through the next
+    corridor."""
 
     lane: Lane | None
     post: int

@@ -35,7 +35,7 @@ class Network:
 
     The crossing of a post is where its lines meet, those of its bays and homes too: one robot at a time, and
     `crossing_s[p]` seconds for one move over it. 0.0 where bays have no place on the floor: such a crossing is
-    nobody's. No robot can move over a crossing that is `shut`.
+    held by no robot. No robot can move over a crossing that is `shut`.
     """
 
     posts: tuple[str, ...]

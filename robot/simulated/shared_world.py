@@ -66,5 +66,5 @@ class SharedWorld(World):
             other.x_m, other.y_m, other.number = pose.x_m, pose.y_m, number
 
     def close(self) -> None:
-        """The robot stays where it is, for everybody."""
+        """The robot stays where it is, for all others."""
         self._file.close()

@@ -48,7 +48,7 @@ class WorldFile:
     @classmethod
     def create(cls, path: Path, ghosts: bool = False) -> "WorldFile":
         """Make an empty world, whatever was there before."""
-        path.unlink(missing_ok=True)  # whoever still has the old one mapped keeps it
+        path.unlink(missing_ok=True)  # a process that has the old one mapped keeps it
         path.write_bytes(_empty(ghosts))
         return cls(path)
 

@@ -64,7 +64,7 @@ def test_a_robot_that_comes_from_a_bay_has_waited_there(write_map):
 
 
 def test_a_robot_cannot_have_passed_a_marker_beyond_the_end_of_its_spur(write_map):
-    """From a spur of 0.5 m: the marker 0.6 m before the post is where nobody comes by."""
+    """From a spur of 0.5 m: the marker 0.6 m before the post is where no robot comes by."""
     assert list(found(write_map, b=(0.0, 0.5))) == ["unseen_approach b", "unseen_marker b, marker 2"]
 
 

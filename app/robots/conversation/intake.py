@@ -175,7 +175,7 @@ class Intake:
         await _heard(session, robots, rows, now)
         for name, row in rows.items():
             self.fleet.announce(session, row, is_seen=_seen(row) != before[name])
-        # What it has received is no news of a robot: it keeps nobody from resting.
+        # What it has received is no news of a robot: it wakes no worker.
         telling = {one.speaker.robot for one in said if not isinstance(one.envelope.body, Ack)}
         self.fleet.have_spoken(session, (robots.keys() - rows.keys()) & telling)
         del ahead

@@ -11,7 +11,7 @@ from protocol.clock import SteppedClock
 
 
 async def looked_again(parts: Parts, **told: Any) -> int:
-    """After the robot has told this: how often somebody was told of news."""
+    """After the robot has told this: how often a listener was notified."""
     news: list[bool] = []
     traffic = parts.traffic_service
     assert traffic is not None

@@ -1,4 +1,4 @@
-"""Robots' reports come late, twice and in any order: no two bodies meet, and everybody comes to an end."""
+"""Robots' reports come late, twice and in any order: no two bodies meet, and every robot comes to its end."""
 
 from random import Random
 
