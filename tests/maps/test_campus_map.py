@@ -41,7 +41,7 @@ def test_the_carleton_tunnels_say_that_their_lengths_are_assumed():
     carleton = builtin_map("carleton")
     assert (len(carleton.posts), len(carleton.corridors)) == (15, 16)
     assert all(corridor.assumed for corridor in carleton.corridors)
-    assert "assumed" in carleton.note
+    assert "lengths and bays are assumed" in carleton.note
     assert {post.name for post in carleton.docks()} == {"uc", "commons", "canal", "mackenzie"}
 
 
@@ -123,8 +123,8 @@ def test_every_approach_of_the_shipped_maps_has_a_marker_on_its_left():
 
 
 def _marker_on_the_left(post: Post, heading_rad: float) -> bool:
-    """The standard place: 0.30 m before the post, 0.35 m beside the line, the face looking across it."""
-    expected = moved(Point(post.x_m, post.y_m), heading_rad, -0.30, 0.35)
+    """The standard place: 0.60 m before a post with bays, 0.35 m beside the line, the face looking across it."""
+    expected = moved(Point(post.x_m, post.y_m), heading_rad, -0.60, 0.35)
     return any(
         math.dist((marker.x_m, marker.y_m), expected) < 1e-6
         and abs(wrapped(marker.heading_rad - heading_rad + math.pi / 2)) < 1e-6
@@ -133,14 +133,12 @@ def _marker_on_the_left(post: Post, heading_rad: float) -> bool:
 
 
 def test_a_docked_robot_has_a_marker_on_its_left():
-    dock = builtin_map("test_track").post("post5").dock
-    assert dock is not None
-    assert math.degrees(dock.heading_rad) == pytest.approx(90)
-    assert _beside(builtin_map("test_track").post("post5"), (1.65, 4.5))
-
-
-def _beside(post: Post, place: tuple[float, float]) -> bool:
-    return any(math.dist((marker.x_m, marker.y_m), place) < 1e-6 for marker in post.markers)
+    """North of post5: 1 m of tape and half a metre more."""
+    bay = builtin_map("test_track").track.post("post5_bay1")
+    assert bay.dock is not None
+    assert (bay.dock.x_m, bay.dock.y_m) == pytest.approx((2.0, 5.5))
+    assert math.degrees(bay.dock.heading_rad) == pytest.approx(90)
+    assert any(math.dist((marker.x_m, marker.y_m), (1.65, 5.5)) < 1e-6 for marker in bay.markers)
 
 
 def test_markers_of_the_file_replace_the_standard_ones(write_map):
@@ -167,7 +165,7 @@ def test_where_there_is_no_network_is_a_fact_and_there_is_unless_the_file_says_s
     silent = read_map(write_map(TWO_POSTS + CORRIDOR + "network = false\n"))
     assert not silent.corridor("a", "b").network and silent.post("a").network
     assert silent.version != plain.version
-    assert builtin_map("test_track").version == "8c5820fb9b64"
+    assert builtin_map("test_track").version == "58c7cf75bdaf"
 
 
 def test_a_map_is_found_by_name_or_by_file(write_map):

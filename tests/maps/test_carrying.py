@@ -1,6 +1,7 @@
 """The number of robots that a map carries, and why: the check says it."""
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,6 +10,7 @@ from typer.testing import CliRunner
 
 from maps import CampusMap, builtin_map, find_map
 from maps.__main__ import cli
+from maps.campus_map import FOLDER
 from maps.carrying import carrying, places_problems
 
 POSTS = """
@@ -58,6 +60,19 @@ def test_as_many_robots_as_bays_that_are_homes(tmp_path: Path) -> None:
     assert carrying(campus).robots == 3
     assert carrying(campus).homes == {"a": 2, "c": 1}
     assert "It carries 3 robots, one for each home place (a 2, c 1)." in str(carrying(campus))
+
+
+@pytest.mark.parametrize(("name", "robots"), [("test_track", 3), ("carleton", 8)])
+def test_what_ships_carries_as_many_as_the_page_on_maps_says(name: str, robots: int) -> None:
+    campus = builtin_map(name)
+    assert carrying(campus).robots == robots
+    assert all(post.bays >= 1 for post in campus.posts.values())
+    page = (FOLDER.parent / "docs/reference/maps.md").read_text(encoding="utf-8")
+    assert re.search(rf"\({re.escape(f'../../maps/{name}.toml')}\)[^.]*?carries\s+{robots}\b", page)
+
+
+def test_the_tunnels_have_two_bays_for_visitors_at_every_post_but_one() -> None:
+    assert [post.name for post in builtin_map("carleton").posts.values() if post.bays != 2] == ["uc"]
 
 
 def test_one_robot_where_no_post_has_a_bay_on_the_floor(tmp_path: Path) -> None:

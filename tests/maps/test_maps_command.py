@@ -25,7 +25,7 @@ def test_a_clean_map_ends_with_exit_0():
     command = [sys.executable, "-m", "maps", "check", "test_track"]
     finished = subprocess.run(command, cwd=CHECKOUT, capture_output=True, text=True, check=False)
     assert (finished.returncode, finished.stderr) == (0, "")
-    assert "test_track.toml: 1 problem\n" in finished.stdout
+    assert "test_track.toml: no problems\n" in finished.stdout
 
 
 def test_a_map_unfit_for_robots_ends_with_exit_1_and_a_sentence_each(write_map):

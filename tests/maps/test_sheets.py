@@ -16,12 +16,14 @@ from maps import builtin_map
 from maps.__main__ import cli
 from maps.campus_map import FOLDER
 from maps.drawing import Square, as_pdf, as_svg
-from maps.sheets import CODE_LEFT_MM, CODE_TOP_MM, PAGE_HEIGHT_MM, PAGE_WIDTH_MM, marker_page
+from maps.sheets import CODE_LEFT_MM, CODE_TOP_MM, PAGE_HEIGHT_MM, PAGE_WIDTH_MM, marker_page, places_with_sheets
+from maps.tags import tag_numbers
 from robot.drivers.camera.april_tags import TagDetector
 from robot.drivers.camera.marker_reader import MarkerReader
 from robot.drivers.camera.qr_decoders import read_with_opencv
 
 TRACK = builtin_map("test_track")
+PLACES = places_with_sheets(TRACK, TRACK.posts.values())
 EXAMPLES = FOLDER.parent / "examples/maps"
 BUILDINGS, SQUARE = EXAMPLES / "two_buildings.toml", EXAMPLES / "square.toml"
 PX_PER_MM = 6
@@ -46,13 +48,13 @@ def printed(tmp_path_factory) -> list[np.ndarray]:
     folder = tmp_path_factory.mktemp("sheets")
     result = run("test_track", "--out", str(folder), "--april-tags")
     assert result.exit_code == 0
-    assert "9 sheets for 5 posts" in result.stdout
+    assert "25 sheets for 5 posts and 8 bays" in result.stdout
     return paper(folder / "test_track.pdf")
 
 
 def test_there_is_a_page_that_explains_and_one_for_each_marker(printed):
     read = [[code.text for code in zxingcpp.read_barcodes(page)] for page in printed]
-    expected = [[post.name] for post in TRACK.posts.values() for _ in post.markers]
+    expected = [[place.name] for place in PLACES for _ in place.markers]
     assert read == [[], *expected]
 
 
@@ -116,7 +118,7 @@ def test_the_code_is_80_mm_wide_and_stands_where_the_robot_expects_it(printed):
         assert np.ptp(columns) + 1 == pytest.approx(80 * PX_PER_MM, abs=2)
         assert np.ptp(rows) + 1 == pytest.approx(80 * PX_PER_MM, abs=2)
         assert columns.min() + 20 * PX_PER_MM == pytest.approx(CODE_LEFT_MM * PX_PER_MM, abs=2)
-        assert (code.ec_level, code.extra["Version"]) == ("H", "1")
+        assert (code.ec_level, code.extra["Version"]) == ("H", "1" if len(code.text) <= 7 else "2")
 
 
 def test_the_robots_other_decoder_reads_it_from_the_paper_too(printed):
@@ -125,8 +127,8 @@ def test_the_robots_other_decoder_reads_it_from_the_paper_too(printed):
 
 
 def test_the_tag_on_the_paper_is_40_mm_and_says_the_same_post(printed):
-    detector = TagDetector({post.tag: post.name for post in TRACK.posts.values() if post.tag is not None})
-    names = [post.name for post in TRACK.posts.values() for _ in post.markers]
+    detector = TagDetector(tag_numbers(TRACK))
+    names = [place.name for place in PLACES for _ in place.markers]
     for page, name in zip(printed[1:], names, strict=True):
         (tag,) = detector.read(cv2.resize(page, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA))
         (x0, y0), (x1, y1), *_ = tag.corners
@@ -136,19 +138,18 @@ def test_the_tag_on_the_paper_is_40_mm_and_says_the_same_post(printed):
 
 def test_a_torn_code_is_still_read_by_its_tag(printed):
     """A person tore the upper half away; the robot stands before what is left."""
-    frame = cv2.resize(printed[4], None, fx=0.28, fy=0.28, interpolation=cv2.INTER_AREA)
+    names = [place.name for place in PLACES for _ in place.markers]
+    frame = cv2.resize(printed[1 + names.index("post3")], None, fx=0.28, fy=0.28, interpolation=cv2.INTER_AREA)
     frame = np.pad(frame, ((60, 60), (180, 180)), constant_values=120)[:480, :640].copy()
     frame[: 60 + int(95 * PX_PER_MM * 0.28)] = 120
-    with_tags = MarkerReader(
-        TRACK.posts, tags={post.tag: post.name for post in TRACK.posts.values() if post.tag is not None}
-    )
+    with_tags = MarkerReader(TRACK.posts, tags=tag_numbers(TRACK))
     assert MarkerReader(TRACK.posts).look(frame, 0.0) == ()
     assert [sighting.text for sighting in with_tags.look(frame, 0.0)] == ["post3"]
 
 
 def test_svg_is_one_file_for_each_post_with_the_same_drawing(tmp_path):
     assert run("test_track", "--format", "svg", "--out", str(tmp_path)).exit_code == 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == [f"post{n}.svg" for n in range(1, 6)]
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(f"{place.name}.svg" for place in PLACES)
     root = ElementTree.parse(tmp_path / "post3.svg").getroot()  # noqa: S314  our own file
     assert (root.get("width"), root.get("height")) == (f"{PAGE_WIDTH_MM}mm", f"{PAGE_HEIGHT_MM}mm")
     path = root.find("{http://www.w3.org/2000/svg}path")
@@ -170,7 +171,7 @@ def test_svg_is_one_file_for_each_post_with_the_same_drawing(tmp_path):
 
 def test_one_post_alone_and_an_unknown_one(tmp_path):
     assert run("carleton", "--post", "uc", "--format", "svg", "--out", str(tmp_path)).exit_code == 0
-    assert [path.name for path in tmp_path.iterdir()] == ["uc.svg"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["uc.svg", "uc_bay1.svg", "uc_bay2.svg"]
     wrong = run("carleton", "--post", "uk", "--out", str(tmp_path))
     assert (wrong.exit_code, "Did you mean 'uc'" in wrong.stderr) == (2, True)
 

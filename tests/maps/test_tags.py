@@ -24,8 +24,19 @@ ends = ["a", "b"]
 """
 
 
-def test_a_post_has_the_number_of_its_place_in_the_file():
-    assert tag_numbers(builtin_map("test_track")) == {n - 1: f"post{n}" for n in range(1, 6)}
+def test_a_post_has_the_number_of_its_place_in_the_file_and_a_bay_counts_from_the_end():
+    bays = [
+        "post1_bay1",
+        "post1_bay2",
+        "post2_bay1",
+        "post3_bay1",
+        "post4_bay1",
+        "post4_bay2",
+        "post5_bay1",
+        "post5_bay2",
+    ]
+    posts = {n - 1: f"post{n}" for n in range(1, 6)}
+    assert tag_numbers(builtin_map("test_track")) == posts | {586 - n: name for n, name in enumerate(bays)}
 
 
 def test_a_number_may_be_pinned(write_map):
