@@ -18,14 +18,12 @@ SIX_DOCKS = ("uc", "canal", "mackenzie", "commons", "richcraft", "robertson")
 
 @pytest.fixture
 def wide_map(tmp_path: Path) -> Path:
-    """The tunnels of Carleton with two docks more, at its dead ends."""
+    """The tunnels of Carleton with two docks more, in the homes at its dead ends."""
     text = builtin_path("carleton").read_text(encoding="utf-8")
-    for title, dock in (
-        ('"Richcraft"\nx_m = 125.0\ny_m = -190.0', "x_m = 125.0, y_m = -190.6, heading_deg = -90.0"),
-        ('"Robertson (Pigiarvik)"\nx_m = 185.0\ny_m = 180.0', "x_m = 185.6, y_m = 180.0, heading_deg = 0.0"),
-    ):
-        assert title in text
-        text = text.replace(title, f"{title}\ndock = {{ {dock} }}")
+    for post in ("richcraft", "robertson"):
+        before, name, after = text.partition(f'name = "{post}"\n')
+        assert name
+        text = before + name + after.replace("home = true", "home = true\ndock = true", 1)
     file = tmp_path / "wide.toml"
     file.write_text(text, encoding="utf-8")
     assert {post.name for post in read_map(file).docks()} == set(SIX_DOCKS)

@@ -8,6 +8,7 @@ from typing import Any
 from protocol.clock import SteppedClock
 from protocol.parts import Purpose, Stop, StopAction
 from protocol.to_robot import Mission, Verifier, Verifiers
+from protocol.to_server import Occupancy
 from robot.agent.mind import messages_from_person
 from robot.core.config import load_settings
 from robot.ops.assembly import Parts, Simulation, assemble
@@ -94,8 +95,9 @@ class SimulatedRun:
         return self.parts.navigator.visited
 
     def is_at(self, post: str) -> bool:
-        """Return whether this is the last post reached."""
-        return self.visited[-1:] == [post]
+        """Return whether this is the last post reached, or it is in a bay of it."""
+        campus = self.parts.navigator.campus
+        return [campus.address_of(place) for place in self.visited[-1:]] == [post]
 
     @property
     def is_home(self) -> bool:
@@ -104,6 +106,12 @@ class SimulatedRun:
     def told(self) -> list[str]:
         """Return what the server would hear: `progress arrived`, `handover load`, `charge low` …"""
         return [_short(kept.message) for kept in self.missions.outbox.pending(limit=1000)]
+
+    @property
+    def bays(self) -> list[str]:
+        """The bays that it reported to stand in."""
+        kept = (one.message for one in self.missions.outbox.pending(limit=1000))
+        return [one.post for one in kept if isinstance(one, Occupancy) and one.where == "bay"]
 
     def kill(self) -> None:
         """As SIGKILL does: nothing is tidied up but what the system does by itself (files and locks are let go)."""

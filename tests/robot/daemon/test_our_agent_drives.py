@@ -26,7 +26,7 @@ PROGRESS = [
 def test_a_letter_is_fetched_delivered_and_the_robot_goes_home(run: SimulatedRun) -> None:
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))
-    assert run.visited == ["post5", "post3", "post2", "post1"]
+    assert run.visited == ["post5_bay1", "post5", "post3", "post2", "post1", "post1_bay2"]
     run.passes(10)
     assert run.waits_for("wait_handover(load"), "no code has been shown yet"
     run.shows(Purpose.RECEIVE)
@@ -38,8 +38,10 @@ def test_a_letter_is_fetched_delivered_and_the_robot_goes_home(run: SimulatedRun
     run.shows(Purpose.RECEIVE)
     run.until(lambda: run.missions.held.mission is None, 10)
     run.until(lambda: run.is_home)
-    assert run.visited[3:] == ["post1", "post2", "post3", "post4", "post3", "post5"]
-    assert run.told() == PROGRESS
+    home = ["post4_bay2", "post4", "post3", "post5", "post5_bay1"]
+    assert run.visited[5:] == ["post1_bay2", "post1", "post2", "post3", "post4", *home]
+    assert [one for one in run.told() if one != "occupancy"] == PROGRESS
+    assert run.bays == ["post5_bay1", "post1_bay2", "post4_bay2", "post5_bay1"]
 
 
 @pytest.mark.nightly

@@ -24,7 +24,7 @@ def papers_run(folder: Path, **settings: object) -> Iterator[SimulatedRun]:
 def test_it_collects_at_post1_and_reaches_post4(tmp_path: Path) -> None:
     with papers_run(tmp_path) as run:
         run.until(lambda: run.mind.is_quiet and run.mind.cycles > 10)
-        assert run.visited == ["post2", "post1", "post2", "post3", "post4"]
+        assert run.visited == ["post2", "post1", "post1_bay2", "post1", "post2", "post3", "post4", "post4_bay2"]
         assert run.mind.failures == []
 
 
@@ -34,5 +34,6 @@ def test_a_low_battery_on_the_way_is_charged_at_the_dock_it_was_told_and_post4_i
         run.until(lambda: run.robot.docked)
         assert run.is_at("post5"), "dockStation(post0) is in the program; the newer belief comes first"
         run.until(lambda: run.mind.is_quiet and not run.robot.docked)
-        assert run.visited == ["post2", "post1", "post2", "post3", "post5", "post3", "post4"]
+        to_the_dock = ["post2", "post1", "post1_bay2", "post1", "post2", "post3", "post5", "post5_bay1"]
+        assert run.visited == [*to_the_dock, "post5", "post3", "post4", "post4_bay2"]
         assert run.did.count("station(dock)") == 1
