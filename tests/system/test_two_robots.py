@@ -13,18 +13,15 @@ from typing import Any
 
 import pytest
 
-from maps.campus_map import map_path
 from tests.system.rig import ROOT, Rig, wait_for
 
 pytestmark = [pytest.mark.system, pytest.mark.alone, pytest.mark.timeout(280)]
 
 ERRANDS = {"r1": ("post2:post3", "post4"), "r2": ("post4:post3", "post2")}
 """Where each begins, looking along which corridor, and where it is sent."""
-HOMES = {"r1": "post5", "r2": "post1"}
-SECOND_DOCK = "dock = { x_m = 0.0, y_m = 4.5, heading_deg = 90.0 }"
-"""The paper's track has one dock, and each robot needs one of its own: another one at the end of the line at post1."""
+HOMES = {"r1": "post5_bay1", "r2": "post1_bay1"}
 BETWEEN = ("post2-post3", "post3-post4")
-ASIDE = {"post1", "post5"}
+ASIDE = {"post1", "post5", "post2_bay1", "post3_bay1", "post4_bay2"}
 """Beside the line from one end to the other: to which of them a robot goes depends on which asks first."""
 
 
@@ -32,17 +29,12 @@ class SharedTrack(Rig):
     """A service that goes by the schedule, and robots that are started by the test."""
 
     def __enter__(self) -> "SharedTrack":
-        at_post1 = 'title = "Post 1"'
-        text = map_path("test_track").read_text()
-        assert text.count(at_post1) == 1
-        self.map_file = self.folder / "two_docks.toml"
-        self.map_file.write_text(text.replace(at_post1, f"{at_post1}\n{SECOND_DOCK}"))
         self.wire.__enter__()
         self.start_service()
         return self
 
     def _service_env(self) -> dict[str, str]:
-        return {**super()._service_env(), "CAMPUS_MAIL_TRAFFIC": "schedule", "CAMPUS_MAIL_MAP": str(self.map_file)}
+        return {**super()._service_env(), "CAMPUS_MAIL_TRAFFIC": "schedule"}
 
     def __exit__(self, *_: object) -> None:
         for person in self.people:
@@ -56,7 +48,7 @@ class SharedTrack(Rig):
         settings_file = self.folder / f"{name}.toml"
         ran = self.type_code(name, code, settings_file)
         assert ran.returncode == 0, ran.stderr
-        settings_file.write_text(f'map = "{self.map_file}"\nhome = "{HOMES[name]}"\n{settings_file.read_text()}')
+        settings_file.write_text(f'home = "{HOMES[name]}"\n{settings_file.read_text()}')
 
     def send(self, name: str) -> None:
         """Put down where it begins, and sent by hand."""
