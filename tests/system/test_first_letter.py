@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from app.robots.link.keepalive import ANSWERS_WITHIN_S, LOOKS_AFTER_S
+from maps import builtin_map
 from tests.system.rig import RECIPIENT, SENDER, Rig, wait_for
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(280)]
@@ -16,6 +17,7 @@ pytestmark = [pytest.mark.system, pytest.mark.timeout(280)]
 WAY = ["queued", "assigned", "to_sender", "at_sender", "carrying", "at_recipient", "delivered"]
 TOLD_SENDER = ["accepted", "delivered", "robot_here", "robot_near"]
 TOLD_RECIPIENT = ["delivered", "on_its_way", "robot_here_for_you"]
+SENDERS_BAY, RECIPIENTS_BAY = (builtin_map("test_track").track.post(bay).point for bay in ("post1_bay2", "post4_bay2"))
 NOTICED_S = LOOKS_AFTER_S + ANSWERS_WITHIN_S + 2.0
 """Of the machine's time: by then the service has given the silent connection up."""
 
@@ -68,10 +70,10 @@ def test_half_a_minute_without_network_and_the_letter_is_delivered_all_the_same(
     letter.load()
     code = letter.recipient.get(f"/orders/{letter.id}/code")["text"]  # a page loaded before the tunnel
     # A way not granted before is not granted without network: it sets out with all its way at once.
-    wait_for("the robot sets out", lambda: not rig.is_near(0.0, 4.0, within_m=0.6))
+    wait_for("the robot sets out", lambda: not rig.is_near(*SENDERS_BAY))
     rig.wire.cut()
     cut_at_s = time.monotonic()
-    wait_for("the robot waits at post4", lambda: rig.stands_at(2.0, 0.0), limit_s=90.0)
+    wait_for("the robot waits at post4", lambda: rig.stands_at(*RECIPIENTS_BAY), limit_s=90.0)
     rig.at_the_door({"do": "show_code", "text": code})
     rig.let_pass(30.0)
     time.sleep(max(0.0, cut_at_s + NOTICED_S - time.monotonic()))
