@@ -14,7 +14,7 @@ from benchmarks.fleet_simulation.durations import FITTED, Taking
 from benchmarks.fleet_simulation.faults import Faults
 from benchmarks.fleet_simulation.figures import figures
 from benchmarks.fleet_simulation.grounds import Ground
-from benchmarks.fleet_simulation.judge import STUCK_S, Judge
+from benchmarks.fleet_simulation.judge import ON_CROSSING_S, STUCK_S, Judge, bay, corridor, crossing
 from benchmarks.fleet_simulation.loop import LoopClock, NothingHappensError, SimulatedLoop
 from benchmarks.fleet_simulation.network import Line, LineClosed
 from benchmarks.fleet_simulation.service import CALM
@@ -46,23 +46,29 @@ def lived(fleet: Fleet, hours: float, seed: int) -> dict[str, Any]:
 
 
 def test_the_same_seed_is_the_same_life_whatever_befalls_robots() -> None:
-    fleet = Fleet(robots=2, ground=Ground("test_track", bays=2, docks=2), faults=OFTEN, pace=CALM)
+    fleet = Fleet(robots=2, ground=Ground("test_track", docks=2), faults=OFTEN, pace=CALM)
     first = lived(fleet, hours=0.25, seed=1)
     assert first["astray"] == []
     assert first["delivered"] > 0
     assert min(first["befallen"][kind] for kind in ("killed", "cut off", "messages lost")) > 0
-    assert first["met"].keys() <= {"crossing", "by a person"}, "posts have no bays on the floor yet"
+    assert first["met"].keys() <= {"by a person"}
     assert lived(fleet, hours=0.25, seed=1) == first
 
 
 def test_robots_that_are_let_in_whoever_is_inside_are_seen_to_meet() -> None:
     """With all corridors granted at once; by the schedule they do not."""
-    ground = Ground("test_track", docks=4)
-    unkept = lived(Fleet(robots=4, ground=ground, traffic="at_once", pace=CALM), hours=0.2, seed=1)
-    kept = lived(Fleet(robots=4, ground=ground, pace=CALM), hours=0.2, seed=1)
+    ground = Ground("test_track", docks=3)
+    unkept = lived(Fleet(robots=3, ground=ground, traffic="at_once", pace=CALM), hours=0.2, seed=1)
+    kept = lived(Fleet(robots=3, ground=ground, pace=CALM), hours=0.2, seed=1)
     assert unkept["met"]["corridor"] > 0
     assert any("in corridor post" in one for one in unkept["meetings"])
-    assert kept["met"].get("corridor", 0) == 0
+    assert kept["arrivals"] > 0
+    assert (kept["met"], kept["in_the_way"]) == ({}, 0)
+
+
+def test_more_robots_than_homes_are_refused() -> None:
+    with pytest.raises(ValueError, match="homes for 3 robots"):
+        lived(Fleet(robots=4, ground=Ground("test_track")), hours=0.1, seed=1)
 
 
 class Bodies:
@@ -70,38 +76,49 @@ class Bodies:
 
     def __init__(self) -> None:
         self.now_s = 0.0
-        self.judge = Judge(TUNNELS, lambda: self.now_s)
+        self.judge = Judge(TUNNELS.track, lambda: self.now_s)
 
 
-def test_two_bodies_in_one_corridor_crossing_or_dock_are_seen_and_one_after_the_other_is_not() -> None:
-    bodies = Bodies()
-    judge = bodies.judge
-    judge.docks("r1", "uc")
-    judge.docks("r2", "canal")
-    judge.enters("r1", THERE)
-    judge.crosses("r1", "canal")
-    judge.enters("r2", BACK)
+def test_two_bodies_in_one_corridor_crossing_or_bay_are_seen_and_one_after_the_other_is_not() -> None:
+    judge = Bodies().judge
+    judge.is_in("r1", [bay("uc_bay1")])
+    judge.is_in("r2", [bay("canal_bay1")])
+    judge.is_in("r1", [crossing("uc"), corridor(THERE)], THERE)
+    judge.is_in("r1", [corridor(THERE)], THERE)
+    judge.is_in("r2", [bay("canal_bay1"), crossing("canal")])
     assert judge.met.total() == 0
-    judge.enters("r1", BACK)
-    assert (dict(judge.met), judge.meetings[0].place) == ({"corridor": 1}, "corridor canal-uc")
-    judge.crosses("r2", "uc")
-    judge.crosses("r1", "uc")
-    judge.docks("r1", "uc")
-    judge.docks("r2", "uc")
-    assert judge.met == {"corridor": 1, "crossing": 1, "dock": 1}
+    judge.is_in("r1", [corridor(THERE), crossing("canal")], THERE)
+    assert (dict(judge.met), judge.meetings[0].place) == ({"crossing": 1}, "crossing canal")
+    judge.is_in("r2", [bay("canal_bay1")])
+    judge.is_in("r1", [crossing("canal"), bay("canal_bay1")])
+    judge.is_in("r1", [crossing("canal"), corridor(BACK)], BACK)
+    judge.is_in("r3", [corridor(THERE)], THERE)
+    assert judge.met == {"crossing": 1, "bay": 1, "corridor": 1}
+    assert judge.arrivals == 3
 
 
 def test_whom_a_person_puts_in_the_way_is_that_persons_doing_until_it_has_left() -> None:
+    judge = Bodies().judge
+    judge.is_in("r1", [bay("uc_bay2")])
+    judge.is_taken("r2")
+    judge.is_put("r2", bay("uc_bay2"))
+    assert judge.met == {"by a person": 1}
+    judge.is_in("r2", [bay("uc_bay2"), crossing("uc")])
+    judge.is_in("r2", [crossing("uc")])
+    judge.is_in("r2", [crossing("uc"), bay("uc_bay2")])
+    assert judge.met == {"by a person": 1, "bay": 1}
+
+
+@pytest.mark.parametrize(("stood_s", "off", "in_the_way"), [(-1.0, False, 0), (1.0, False, 1), (1.0, True, 0)])
+def test_who_stands_on_a_crossing_is_in_the_way_unless_it_is_off(stood_s: float, off: bool, in_the_way: int) -> None:
     bodies = Bodies()
-    bodies.judge.crosses("r1", "uc")
-    bodies.judge.is_taken("r2")
-    bodies.judge.is_put("r2", "uc")
-    assert bodies.judge.met == {"by a person": 1}
-    bodies.judge.enters("r2", THERE)
-    bodies.judge.crosses("r2", "canal")
-    bodies.judge.enters("r2", BACK)
-    bodies.judge.crosses("r2", "uc")
-    assert bodies.judge.met == {"by a person": 1, "crossing": 1}
+    bodies.judge.is_in("r1", [bay("uc_bay1"), crossing("uc")])
+    if off:
+        bodies.judge.is_off("r1")
+    bodies.now_s = ON_CROSSING_S + stood_s
+    bodies.judge.is_in("r1", [crossing("uc"), corridor(THERE)], THERE)
+    bodies.judge.ends()
+    assert len(bodies.judge.in_the_way) == in_the_way
 
 
 @pytest.mark.parametrize(("waited_s", "stuck"), [(STUCK_S - 1, 0), (STUCK_S + 1, 1)])
@@ -151,9 +168,9 @@ def test_what_is_said_while_a_line_is_cut_comes_late_and_in_order_and_is_lost_wi
     assert in_simulated_time(talks()) == [str(number) for number in range(50)]
 
 
-def test_ways_have_paces_of_their_own_and_the_ground_as_many_docks_and_bays_as_asked(tmp_path: Path) -> None:
-    campus = Ground(bays=3, docks=8).read(tmp_path)
-    assert (len(campus.docks()), {post.bays for post in campus.posts.values()}) == (8, {3})
+def test_ways_have_paces_of_their_own_and_the_ground_as_many_docks_as_asked(tmp_path: Path) -> None:
+    campus = Ground(docks=7).read(tmp_path)
+    assert [home.dock is not None for home in campus.track.home_bays] == [True] * 7 + [False]
     assert Ground().read(tmp_path).version == TUNNELS.version
     taking = Taking(TUNNELS, FITTED, seed=1)
     there_s, back_s = ([taking.drive_s(leg, Random(n)) for n in range(50)] for leg in (THERE, BACK))

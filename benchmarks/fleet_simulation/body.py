@@ -10,8 +10,9 @@ from random import Random
 from typing import Final
 
 from benchmarks.fleet.packs import Pack
+from benchmarks.fleet_simulation.driving import Part, is_spur, parts_back, parts_of, place_of
 from benchmarks.fleet_simulation.durations import Spread, Taking
-from benchmarks.fleet_simulation.judge import DOCK, Judge
+from benchmarks.fleet_simulation.judge import Judge, bay
 from maps import CampusMap
 from protocol.parts import Leg
 from robot.agent.perception.battery import BatteryLevel
@@ -25,20 +26,21 @@ OTHER_PACK: Final = 0.5
 
 @dataclass
 class Body:
-    """`lane`: the corridor that it is in, of which `left_s` are left. `looks`: it knows which way."""
+    """`post`: the bay in which it stands, or the post on whose crossing. `lane`: the spur or corridor that it drives
+    through, of which `parts` are left; `turned`: it has turned round in there."""
 
     name: str
     post: str
-    campus: CampusMap
+    track: CampusMap
     taking: Taking
     judge: Judge
     pack: Pack
     rng: Random
     lane: Leg | None = None
-    left_s: float = 0.0
+    parts: list[Part] = field(default_factory=list)
+    turned: bool = False
     docked: bool = False
     in_hands: bool = False
-    looks: bool = True
     driven_m: float = 0.0
     stranded: int = 0
     word: BatteryLevel = BatteryLevel.OK
@@ -49,55 +51,81 @@ class Body:
 
     @property
     def at(self) -> str | None:
-        """The post where it stands, or in whose dock."""
+        """The bay or crossing where it stands."""
         return None if self.lane is not None or self.in_hands else self.post
+
+    @property
+    def corridor(self) -> Leg | None:
+        """The corridor in which it is, the way that it looks."""
+        return None if self.lane is None or is_spur(self.track, self.lane) else self.lane
+
+    @property
+    def is_wholly_inside(self) -> bool:
+        """Off the crossing behind it; of one that has turned round: the marker ahead tells the way that it goes."""
+        return self.corridor is not None and len(self.parts) <= (1 if self.turned else 3)
+
+    @property
+    def nears_crossing(self) -> bool:
+        return self.corridor is not None and len(self.parts) <= 2
+
+    @property
+    def is_before_crossing(self) -> bool:
+        """Where it waits until it may cross, and not yet over that line."""
+        return (
+            self.nears_crossing and len(self.parts) == 1 and self.judge.places_of(self.name) != {*self.parts[0].places}
+        )
 
     # Moves. Each may be cut off by a kill.
 
     async def takes(self, spread: Spread) -> None:
         await asyncio.sleep(spread.draw_s(self.rng))
 
-    async def enter(self, leg: Leg) -> None:
-        """Turn towards it, and drive to its end."""
-        await self.takes(self.taking.table.turn)
-        self.lane, self.left_s = leg, self.taking.drive_s(leg, self.rng)
-        self.judge.enters(self.name, leg)
-        await self.drive_on()
+    async def turn_to(self, leg: Leg, came_by: Leg | None) -> None:
+        """Turn towards it, and set out."""
+        table = self.taking.table
+        through = came_by is not None and not (is_spur(self.track, came_by) or is_spur(self.track, leg))
+        if not self.track.post(leg.from_post).bay_of:
+            await self.takes(table.straight_on if through else table.turn)
+        self.lane, self.parts, self.turned = leg, parts_of(self.track, self.taking, leg, self.rng), False
 
-    async def drive_on(self) -> None:
-        """Drive what is left of the corridor."""
+    def turn_back(self) -> None:
+        """Round, in its corridor."""
         assert self.lane is not None
+        self.lane = Leg(from_post=self.lane.to_post, to_post=self.lane.from_post)
+        self.parts, self.turned = parts_back(self.taking, self.lane, self.rng), not self.turned
+
+    async def drive(self) -> None:
+        """Drive what is left of the next part."""
+        part = self.parts[0]
         self._settle()
+        self.judge.is_in(self.name, part.places, self.lane)
         self._drives, since_s = True, self.judge.now_s()
         try:
-            await asyncio.sleep(self.left_s)
+            await asyncio.sleep(part.left_s)
         finally:
-            self.left_s = max(0.0, self.left_s - (self.judge.now_s() - since_s))
+            part.left_s = max(0.0, part.left_s - (self.judge.now_s() - since_s))
             self._settle()
             self._drives = False
-        self._arrive()
+        self.parts.pop(0)
+        if not self.parts:
+            self._arrive()
 
     def _arrive(self) -> None:
         assert self.lane is not None
         leg, self.lane = self.lane, None
-        self.driven_m += self.campus.corridor(leg.from_post, leg.to_post).length_m
-        self.post, self.looks = leg.to_post, True
-        self.judge.crosses(self.name, self.post)
+        self.driven_m += self.track.corridor(leg.from_post, leg.to_post).length_m
+        self.post = leg.to_post
+        self.judge.is_in(self.name, [place_of(self.track, self.post)])
 
-    async def dock(self) -> bool:
-        """False if another stands in it: this one feels that, and stays on the crossing."""
+    async def dock(self) -> None:
+        """Straight on from the end of its bay."""
         await self.takes(self.taking.table.dock)
-        if not self.judge.is_free(f"{DOCK} {self.post}"):
-            return False
         self._settle()
         self.docked = True
-        self.judge.docks(self.name, self.post)
-        return True
 
     async def undock(self) -> None:
         self._settle()
         self.docked = False
-        self.judge.crosses(self.name, self.post)
         await self.takes(self.taking.table.undock)
 
     # What people do with it.
@@ -105,13 +133,14 @@ class Body:
     def is_taken(self) -> None:
         """Out of the way, in a person's hands."""
         self._settle()
-        self.lane, self.docked, self.in_hands, self.looks = None, False, True, False
+        self.lane, self.parts, self.docked, self.in_hands = None, [], False, True
         self.judge.is_taken(self.name)
 
-    def is_put(self, post: str, *, in_dock: bool = False) -> None:
+    def is_put(self, place: str) -> None:
+        """Into a bay, and into the dock that it has."""
         self._settle()
-        self.post, self.in_hands, self.docked, self.looks = post, False, in_dock, in_dock
-        self.judge.is_put(self.name, post, in_dock=in_dock)
+        self.post, self.in_hands, self.docked = place, False, self.track.post(place).dock is not None
+        self.judge.is_put(self.name, bay(place))
 
     # Its charge.
 
@@ -149,12 +178,7 @@ class Body:
         self.weak = ratio < BEGINS + (HYSTERESIS if self.weak else 0.0)
 
 
-def begins_in_dock(body: Body) -> None:
-    """At the start of a run each robot stands where it is at home."""
-    body.docked = True
-    body.judge.docks(body.name, body.post)
-
-
-def begins_at_post(body: Body) -> None:
-    """The same without a dock."""
-    body.judge.crosses(body.name, body.post)
+def begins_at_home(body: Body) -> None:
+    """At the start of a run each robot is in its bay, and in the dock there."""
+    body.docked = body.track.post(body.post).dock is not None
+    body.judge.is_in(body.name, [bay(body.post)])

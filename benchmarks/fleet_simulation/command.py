@@ -32,10 +32,7 @@ def simulate(
     hours: Annotated[float, typer.Option(min=0.01, help="Simulated.")] = 24.0,
     seed: Annotated[int, typer.Option(help="Of the same seed everything is the same.")] = 1,
     campus: Annotated[str, typer.Option(help="A built-in map.")] = "carleton",
-    bays: Annotated[int, typer.Option(min=0, help="At each post; 0: as the map has them.")] = 0,
-    docks: Annotated[
-        int, typer.Option(min=0, help="On the map; 0: one for each robot, if there are posts enough.")
-    ] = 0,
+    docks: Annotated[int, typer.Option(min=0, help="In homes; 0: as the map has them.")] = 0,
     waiting: Annotated[int, typer.Option(min=0, help="Orders that always wait; 0: robots and five.")] = 0,
     orders_a_day: Annotated[float, typer.Option(min=0.0, help="In rush hours, instead of those.")] = 0.0,
     capacity: Annotated[int, typer.Option(min=1, help="Items that a robot carries.")] = 2,
@@ -48,7 +45,7 @@ def simulate(
     begin_with_like_hashes()
     simulates_only()
     demand: Demand = RushHours(orders_a_day) if orders_a_day else Saturated(waiting or robots + 5)
-    ground = Ground(campus, bays, docks or robots)
+    ground = Ground(campus, docks)
     fleet = Fleet(
         robots, ground, capacity, packs_last, rounds, MANY if faults else NONE, demand, CALM if calm else SHIPPED
     )

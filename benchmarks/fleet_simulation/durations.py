@@ -34,7 +34,20 @@ class Durations:
     each_way: tuple[float, float] = (1.06, 1.73)
     """Times length ÷ speed."""
     each_time: float = 0.2
+    out_of_bay: Spread = Spread(9.0, 0.25, 4.0, 60.0)
+    """Round, and over the spur to the post."""
     turn: Spread = Spread(4.0, 0.3, 1.0, 30.0)
+    """At a post, out of a bay or into one."""
+    straight_on: Spread = Spread(1.0, 0.3, 0.2, 10.0)
+    into_corridor: Spread = Spread(6.0, 0.25, 3.0, 30.0)
+    """From the post until its body is off the crossing. From the bay until there it takes some 19 s; from where it
+    waits before a crossing some 15 s into a bay, and 10 s through."""
+    to_crossing: Spread = Spread(3.0, 0.25, 1.5, 20.0)
+    """From where it waits to the post."""
+    into_bay: Spread = Spread(8.0, 0.25, 4.0, 60.0)
+    asks_before_m: float = 2.0
+    """Before it comes to where it would wait it asks for what comes after the crossing."""
+    turn_back: Spread = Spread(8.0, 0.3, 4.0, 60.0)
     dock: Spread = Spread(25.0, 0.3, 10.0, 120.0)
     undock: Spread = Spread(10.0, 0.2, 5.0, 30.0)
     loaded: Spread = Spread(45.0, 0.6, 5.0)

@@ -54,12 +54,12 @@ class Trouble:
         return [asyncio.create_task(work) for work in works]
 
     def _kinds(self, one: Owned) -> Sequence[tuple[str, float, Callable[[Random], Awaitable[None]]]]:
-        faults, posts = self.faults, sorted(self.campus.posts)
+        faults = self.faults
         return (
             ("killed", faults.killed_h, lambda _: one.restarts()),
             ("cut off", faults.cut_off_h, lambda rng: one.is_cut_off(rng.uniform(*AWAY_S))),
             ("lost", faults.messages_lost_h, lambda _: one.loses_messages()),
-            ("carried", faults.carried_h, lambda rng: one.is_carried(rng.choice(posts), rng.uniform(*CARRIED_S))),
+            ("carried", faults.carried_h, lambda rng: one.is_carried(rng.uniform(*CARRIED_S), rng)),
             ("died", faults.died_h, lambda _: one.dies()),
         )
 

@@ -29,6 +29,10 @@ def figures(seen: Seen, robots: int) -> dict[str, Any]:
         "met": dict(sorted(judge.met.items())),
         "meetings": [_in_words(one) for one in judge.meetings],
         "arrivals": judge.arrivals,
+        "in_the_way": len(judge.in_the_way),
+        "stood_on_crossing": [
+            f"{robot} on {place} until {until_s:.0f} s" for robot, place, until_s in judge.in_the_way[:20]
+        ],
         "stuck": len(judge.stuck),
         "stuck_robots": [f"{robot} until {until_s:.0f} s" for robot, until_s in judge.stuck[:20]],
         "too_old": sum(age_s > AGE_LIMIT_S + ALLOWANCE_S for age_s in _ages_s(seen.people, seen.hours * 3600.0)),

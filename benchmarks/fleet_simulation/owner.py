@@ -3,9 +3,11 @@
 import asyncio
 from collections import Counter
 from dataclasses import dataclass, field
+from random import Random
 from typing import Final
 
 from benchmarks.fleet_simulation.body import Body
+from benchmarks.fleet_simulation.judge import BAY, CORRIDOR, CROSSING, bay
 from benchmarks.fleet_simulation.network import Network
 from benchmarks.fleet_simulation.people import People
 from benchmarks.fleet_simulation.robot import MakeMind, Mind
@@ -18,7 +20,6 @@ class Owned:
     """`befallen`: how often what has befallen it. `is_dead`: until a person has found it."""
 
     name: str
-    home: str | None
     body: Body
     network: Network
     people: People
@@ -57,6 +58,7 @@ class Owned:
         """Killed at any moment, and started again: what it had in memory alone is gone."""
         async with self._busy:
             self.befallen["killed"] += 1
+            self.body.judge.is_off(self.name)
             await self.switch_off()
             await self.body.takes(self.body.taking.table.boot)
             self.switch_on()
@@ -72,8 +74,8 @@ class Owned:
             self.befallen["messages lost"] += 1
             self.network.hang_up()
 
-    async def is_carried(self, post: str, for_s: float) -> None:
-        """A person lifts it, and puts it down somewhere else."""
+    async def is_carried(self, for_s: float, rng: Random) -> None:
+        """A person lifts it, and puts it down in a bay somewhere else."""
         async with self._busy:
             if self.body.docked:
                 return
@@ -82,27 +84,37 @@ class Owned:
             self.body.is_taken()
             self.switch_on()
             await asyncio.sleep(for_s)
-            self.body.is_put(post)
+            self.body.is_put(rng.choice(self._empty_bays()))
             if self.mind is not None:
                 self.mind.was_moved()
 
     async def dies(self) -> None:
         """Where it is, until a person has found it, carried it home, and told the service so."""
         async with self._busy:
-            self.befallen["died in a corridor" if self.body.lane else "died at a post"] += 1
+            self.befallen[f"died in a {self._kind_of_place()}"] += 1
             self.is_dead = True
+            self.body.judge.is_off(self.name)
+            home = self.mind.home if self.mind else self.body.post
             await self.switch_off()
             await self.body.takes(self.body.taking.table.looked_for)
             self.body.is_taken()
             await self.people.take_out(self.name)
-            await self._comes_home()
+            await self._comes_home(home)
             self.is_dead = False
 
-    async def _comes_home(self) -> None:
+    def _kind_of_place(self) -> str:
+        """The most that it blocks: on its way from one to the next it is in both."""
+        kinds = {place.partition(" ")[0] for place in self.body.judge.places_of(self.name)}
+        return next(kind for kind in (CROSSING, CORRIDOR, BAY) if kind in kinds)
+
+    def _empty_bays(self) -> list[str]:
+        track, is_free = self.body.track, self.body.judge.is_free
+        passing = [place.name for place in track.posts.values() if place.bay_of and not (place.homes or place.dock)]
+        return [name for name in passing if is_free(bay(name))]
+
+    async def _comes_home(self, home: str) -> None:
         """The person puts it into its dock, switches it on, and lets it go when it has heard what it has to."""
-        home = self.home or self.body.post
-        has_dock = self.body.campus.posts[home].dock is not None
-        self.body.is_put(home, in_dock=has_dock and self.body.judge.is_free(f"dock {home}"))
+        self.body.is_put(home)
         self.switch_on()
         await self.body.takes(self.body.taking.table.boot)
         while self.mind is not None and not self.mind.missions.held.revoked:  # noqa: ASYNC110  # as a person does

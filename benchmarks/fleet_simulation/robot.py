@@ -14,13 +14,14 @@ from benchmarks.fleet_simulation.body import Body
 from benchmarks.fleet_simulation.network import Network
 from benchmarks.fleet_simulation.people import People
 from benchmarks.fleet_simulation.robot_link import RobotLink
-from benchmarks.fleet_simulation.route import Route
+from benchmarks.fleet_simulation.route import Crossing, Route
 from maps import CampusMap, NoRoute, shortest_route
 from protocol.clock import Clock
 from protocol.envelope import YOUNGER
 from protocol.parts import Activity, Battery, Leg, Purpose, Stop, StopAction
 from protocol.to_server import Hello, Snapshot, Step
 from robot.agent.perception.battery import BatteryLevel
+from robot.localization.bays import places_to_stand
 from robot.mission.memory import Memory
 from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
@@ -30,7 +31,6 @@ from robot.mission.store import Store
 LOOKS_AT_BATTERY_S: Final = 60.0
 DENIED_S: Final = 15.0
 NO_WAY_S: Final = 30.0
-NO_DOCK_S: Final = 60.0
 SILENCE_S: Final = 120.0
 PURPOSES: Final = {
     StopAction.LOAD: Purpose.LOAD,
@@ -43,11 +43,14 @@ Purposeful = tuple[str, str]
 
 @dataclass
 class Mind:
-    """One life of the daemon, from its start to its end. What it knows at first is what its store remembers."""
+    """One life of the daemon, from its start to its end. What it knows at first is what its store remembers.
+
+    `first_home`: of its settings, until the service gives it one. `_asides`: where the service has sent it first.
+    """
 
     name: str
-    home: str | None
-    campus: CampusMap
+    first_home: str
+    track: CampusMap
     clock: Clock
     body: Body
     network: Network
@@ -60,14 +63,17 @@ class Mind:
     _news: asyncio.Event = field(default_factory=asyncio.Event)
     _activity: Activity = Activity.IDLE
     _asks_for: Purposeful | None = None
+    _asides: list[str] = field(default_factory=list)
+    _is_about: Purposeful | None = None
     _silent_since_s: float | None = None
+    _came_by: Leg | None = None
 
     def __post_init__(self) -> None:
         memory, outbox = Memory(self.store), Outbox(self.store)
         self.missions = MissionManager(self.store, memory, outbox, self.clock.utc)
         self.link = RobotLink(self.name, self.network, self.clock, outbox, memory, self._hello, self.rng)
         self.missions.join(self.link)
-        self.route = Route(self.campus, self.body, self.missions, self.home, self.rng)
+        self.route = Route(self.track, self.body, self.missions)
         self.link.on_news = self._hears
 
     async def run(self) -> None:
@@ -83,6 +89,10 @@ class Mind:
             self.network.hang_up()
             self.body.judge.goes_on(self.name)
 
+    @property
+    def home(self) -> str:
+        return self.missions.held.home or self.first_home
+
     # What it hears and tells.
 
     def _hears(self) -> None:
@@ -92,7 +102,7 @@ class Mind:
         self._news.set()
 
     def was_moved(self) -> None:
-        """A person has put it down, and it has read the marker there, or is in a dock."""
+        """A person has put it down, in a bay, and it has read the marker there."""
         self.route.was_moved(self.body.post)
         self._news.set()
 
@@ -131,7 +141,7 @@ class Mind:
             mission=held.mission_held,
             battery=self._battery(),
             software="simulated",
-            map_version=self.campus.version,
+            map_version=self.track.version,
             understands=YOUNGER,
             home=self.home,
         )
@@ -151,23 +161,27 @@ class Mind:
             return "hold", ""
         if held.mission is not None:
             return ("stop", held.stop.id) if held.stop else ("finish", held.mission.id)
-        return ("go_home", "") if self.home and not self._is_home else ("idle", "")
+        return ("go_home", "") if not self._is_home else ("idle", "")
 
     @property
     def _is_home(self) -> bool:
-        has_dock = self.campus.posts[self.home].dock is not None if self.home else False
-        return self.body.at == self.home and (self.body.docked or not has_dock)
+        return self.body.at == self.home and (self.body.docked or not self._has_dock(self.home))
+
+    def _has_dock(self, place: str) -> bool:
+        return self.track.post(place).dock is not None
 
     async def _live(self) -> None:
-        if self.body.lane is not None:
-            await self._drive_on()
-        elif not self.body.in_hands:
+        if self.body.at is not None:
             self.missions.seen(self.body.post)
         while True:
             self._news.clear()
             self.missions.take_messages()
             self.route.give_back_crossed()
+            if not self.missions.held.revoked:
+                self.route.tells_place()
             purpose = self.purpose()
+            if purpose != self._is_about:
+                self._is_about, self._asides = purpose, []
             if self._asks_for not in (None, purpose):
                 self.missions.claims.withdraw()
                 self._asks_for = None
@@ -188,21 +202,24 @@ class Mind:
     def is_let_go(self) -> None:
         """A person has put it down after its corridors were given to others: it knows where it is again."""
         self.missions.stop_asked = self.missions.forget_place_asked = False
-        self.missions.seen(self.body.post)
+        self.route.was_moved(self.body.post)
         self.missions.report_fault(REVOKED, "It knows where it is again.", self.body.post, cleared=True)
         self._news.set()
 
     async def _idle(self) -> None:
-        self.route.release()
-        await self._news_comes(self._resting)
+        """Nowhere on the lines, where others drive."""
+        inside = self.body.lane or self.body.at
+        post = inside.to_post if isinstance(inside, Leg) else inside or self.home
+        if await self._is_at(self.track.address_of(post)):
+            self.route.release()
+            await self._news_comes(self._resting)
 
     @property
     def _resting(self) -> Activity:
         return Activity.CHARGING if self.body.charging else Activity.IDLE
 
     async def _go_home(self) -> None:
-        assert self.home is not None
-        if await self._is_at(self.home) and self.campus.posts[self.home].dock is not None:
+        if await self._is_at(self.home) and self._has_dock(self.home):
             await self._dock()
 
     async def _charge(self) -> None:
@@ -221,48 +238,82 @@ class Mind:
             await self._news_comes(Activity.CHARGING)
 
     def _nearest_dock(self) -> str:
-        docks = [post.name for post in self.campus.docks()]
-        return min(docks, key=lambda dock: shortest_route(self.campus, self.body.post, dock).length_m)
+        docks = [bay.name for bay in self.track.docks()]
+        return min(docks, key=lambda dock: shortest_route(self.track, self.body.post, dock).length_m)
 
-    async def _dock(self) -> bool:
+    async def _dock(self) -> None:
         self._shows(Activity.DRIVING)
-        if await self.body.dock():
-            self._shows(self._resting)
-            return True
-        await self._news_comes(Activity.WAITING, NO_DOCK_S)
-        return False
+        await self.body.dock()
+        self._shows(self._resting)
 
-    # From post to post.
+    # From bay to bay.
 
     async def _is_at(self, goal: str) -> bool:
-        """Whether it stands there; else it comes nearer by a corridor, or waits for one."""
-        if self.body.at == goal:
+        """Whether it stands in a bay there; else it comes nearer by one part of the way, or waits."""
+        goal = self._asides[-1] if self._asides else goal
+        if self.body.at in places_to_stand(self.track, goal):
             self._goes_on()
-            return True
+            if not self._asides:
+                return True
+            self._asides.pop()
+            return False
         try:
-            leg = self.route.next_leg(goal)
+            await (self._drive(goal) if self.body.lane is not None else self._leave(goal))
         except NoRoute:
             self.route.asks_anywhere()
             await self._news_comes(Activity.WAITING, NO_WAY_S)
-            return False
+            if self.body.at is not None and not self.route.is_in_bay and goal != self.home:
+                self._asides.append(self.home)
+        return False
+
+    async def _leave(self, goal: str) -> None:
+        """Out of a bay or off a crossing, when it may."""
+        leg = self.route.next_leg(goal)
         if leg is None:
-            await self._wait_for_leave(goal)
-            return False
+            await self._wait_for_leave()
+            return
+        aside = self.route.detour
+        if aside is not None and aside.to_post != goal:
+            self._asides.append(aside.to_post)
+            return
         self._goes_on()
         self._shows(Activity.DRIVING)
         if self.body.docked:
             await self.body.undock()
         self.missions.heading_for(leg.to_post)
-        await self.body.enter(leg)
-        self._came_through(leg)
-        return False
+        await self.body.turn_to(leg, self._came_by)
+        await self._drive(goal)
+
+    async def _drive(self, goal: str) -> None:
+        """On through its spur or corridor; before a crossing it waits until it may."""
+        body, leg = self.body, self.body.lane
+        assert leg is not None
+        if body.is_before_crossing:
+            match self.route.waits_to_cross(goal):
+                case Crossing.WAITS:
+                    await self._wait_for_leave()
+                    return
+                case Crossing.TURNS_BACK:
+                    body.turn_back()
+                    self.missions.heading_for(leg.from_post)
+                    return
+        elif body.nears_crossing:
+            self.route.ask_ahead(goal)
+        self._goes_on()
+        self._shows(Activity.DRIVING)
+        turned = body.turned
+        await body.drive()
+        if body.lane is None:
+            self._came_through(leg, turned=turned)
+        else:
+            self.route.tells_place()
 
     def _goes_on(self) -> None:
         self._asks_for = None
         self.body.judge.goes_on(self.name)
 
-    async def _wait_for_leave(self, goal: str) -> None:
-        if self.route.is_denied():
+    async def _wait_for_leave(self) -> None:
+        if self.body.at is not None and self.route.is_denied():
             await self._news_comes(Activity.WAITING, DENIED_S)
             return
         self._asks_for = self.purpose()
@@ -275,18 +326,11 @@ class Mind:
     def _patience_s(self) -> float | None:
         return None if self._silent_since_s is None else SILENCE_S
 
-    async def _drive_on(self) -> None:
-        """It was switched off in a corridor."""
-        assert self.body.lane is not None
-        leg = self.body.lane
-        self._shows(Activity.DRIVING)
-        await self.body.drive_on()
-        self._came_through(leg)
-
-    def _came_through(self, leg: Leg) -> None:
-        self.route.came_through(leg)
+    def _came_through(self, leg: Leg, *, turned: bool) -> None:
+        self._came_by = leg
+        self.route.came_through(leg, turned=turned)
         stop = self.missions.held.stop
-        if stop is not None and stop.post != leg.to_post:
+        if stop is not None and stop.post != self.track.address_of(leg.to_post):
             self.missions.report(Step.PASSED, stop.id, leg.to_post)
         self._tells()
 
@@ -304,11 +348,16 @@ class Mind:
             self.missions.finish_stop(stop.id)
             return
         self.missions.report(Step.DEPARTED, stop.id, self.body.at)
-        if stop.post not in self.campus.posts:
+        if stop.post not in self.track.posts:
             self._gives_up(stop, "unknown_post")
-        elif await self._is_at(stop.post):
+        elif await self._is_at(self._place_for(stop)):
             self.missions.report(Step.ARRIVED, stop.id, stop.post)
             await (self._fill_up(stop) if stop.action is StopAction.DOCK else self._attend(stop))
+
+    def _place_for(self, stop: Stop) -> str:
+        if stop.action is not StopAction.DOCK:
+            return stop.post
+        return next((bay.name for bay in self.track.bays_of(stop.post) if bay.dock), stop.post)
 
     def _is_over(self, stop: Stop) -> bool:
         held = self.missions.held
@@ -323,8 +372,8 @@ class Mind:
         self.missions.finish_stop(stop.id)
 
     async def _fill_up(self, stop: Stop) -> None:
-        if not self.body.docked and not await self._dock():
-            return
+        if not self.body.docked:
+            await self._dock()
         if stop.until_ratio is None or self.body.has(stop.until_ratio):
             self._is_done(stop)
             return

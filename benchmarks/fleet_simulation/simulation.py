@@ -16,7 +16,7 @@ from typing import Final
 
 from app.eta.schemas import EstimateQuality
 from benchmarks.fleet.packs import some_pack
-from benchmarks.fleet_simulation.body import Body, begins_at_post, begins_in_dock
+from benchmarks.fleet_simulation.body import Body, begins_at_home
 from benchmarks.fleet_simulation.demand import Demand, Saturated
 from benchmarks.fleet_simulation.durations import FITTED, Taking
 from benchmarks.fleet_simulation.faults import NONE, Faults, Trouble
@@ -101,7 +101,7 @@ class Run:
             robot_capacity=self.fleet.capacity,
             traffic=self.fleet.traffic,
         )
-        judge, taking = Judge(campus, clock.now), Taking(campus, FITTED, self.seed)
+        judge, taking = Judge(campus.track, clock.now), Taking(campus, FITTED, self.seed)
         people, befallen = People(service.parts, taking, self._rng("people")), Counter[str]()
         await people.begin()
         for number, home in enumerate(homes(campus, self.fleet.robots)):
@@ -128,22 +128,21 @@ class Run:
     async def _add_robot(
         self,
         name: str,
-        home: tuple[str, bool],
+        home: str,
         world: tuple[CampusMap, LoopClock, Judge, Taking],
         service: Service,
         people: People,
         befallen: Counter[str],
     ) -> None:
         campus, clock, judge, taking = world
-        post, is_home = home
         pack = some_pack(self._rng(f"{name} pack"))
         pack.capacity_mah, pack.charger_ma = pack.capacity_mah * self.fleet.lasts, pack.charger_ma * self.fleet.lasts
-        body = Body(name, post, campus, taking, judge, pack, self._rng(f"{name} body"))
-        (begins_in_dock if is_home else begins_at_post)(body)
+        body = Body(name, home, campus.track, taking, judge, pack, self._rng(f"{name} body"))
+        begins_at_home(body)
         network = Network(service.serve, await service.enrol(name), self._rng(f"{name} network"))
-        mind = partial(Mind, name, post if is_home else None, campus, clock, body, network, people)
+        mind = partial(Mind, name, home, campus.track, clock, body, network, people)
         make = partial(mind, Store(None), self._rng(f"{name} mind"))
-        one = Owned(name, post if is_home else None, body, network, people, make, befallen)
+        one = Owned(name, body, network, people, make, befallen)
         one.switch_on()
         self.owned.append(one)
 
@@ -184,8 +183,9 @@ class Run:
         await service.end()
 
 
-def homes(campus: CampusMap, robots: int) -> list[tuple[str, bool]]:
-    """Where each robot begins, and whether that is its home: a dock is the home of one robot, others have none."""
-    docks = [post.name for post in campus.docks()]
-    others = sorted(campus.posts.keys() - docks) or docks
-    return [(docks[at], True) if at < len(docks) else (others[at % len(others)], False) for at in range(robots)]
+def homes(campus: CampusMap, robots: int) -> list[str]:
+    """Where each robot begins: in a home of its own. Raises ValueError if the map has too few."""
+    known = [home.name for home in campus.track.home_bays]
+    if robots > len(known):
+        raise ValueError(f"the map {campus.name} has homes for {len(known)} robots, and not for {robots}")
+    return known[:robots]
