@@ -15,11 +15,11 @@ from benchmarks.fleet_simulation.network import Network
 from benchmarks.fleet_simulation.people import People
 from benchmarks.fleet_simulation.robot_link import RobotLink
 from benchmarks.fleet_simulation.route import Crossing, Route
+from benchmarks.fleet_simulation.telling import Telling
 from maps import CampusMap, NoRoute, shortest_route
 from protocol.clock import Clock
-from protocol.envelope import YOUNGER
-from protocol.parts import Activity, Battery, Leg, Purpose, Stop, StopAction
-from protocol.to_server import Hello, Snapshot, Step
+from protocol.parts import Activity, Leg, Purpose, Stop, StopAction
+from protocol.to_server import Step
 from robot.agent.perception.battery import BatteryLevel
 from robot.localization.bays import places_to_stand
 from robot.mission.memory import Memory
@@ -59,9 +59,9 @@ class Mind:
     rng: Random
     link: RobotLink = field(init=False)
     missions: MissionManager = field(init=False)
+    telling: Telling = field(init=False)
     route: Route = field(init=False)
     _news: asyncio.Event = field(default_factory=asyncio.Event)
-    _activity: Activity = Activity.IDLE
     _asks_for: Purposeful | None = None
     _asides: list[str] = field(default_factory=list)
     _is_about: Purposeful | None = None
@@ -71,7 +71,8 @@ class Mind:
     def __post_init__(self) -> None:
         memory, outbox = Memory(self.store), Outbox(self.store)
         self.missions = MissionManager(self.store, memory, outbox, self.clock.utc)
-        self.link = RobotLink(self.name, self.network, self.clock, outbox, memory, self._hello, self.rng)
+        self.telling = Telling(self.first_home, self.track.version, self.body, self.missions)
+        self.link = RobotLink(self.name, self.network, self.clock, outbox, memory, self.telling.hello, self.rng)
         self.missions.join(self.link)
         self.route = Route(self.track, self.body, self.missions)
         self.link.on_news = self._hears
@@ -115,36 +116,11 @@ class Mind:
             await asyncio.sleep(LOOKS_AT_BATTERY_S)
 
     def _tells(self) -> None:
-        held = self.missions.held
-        self.link.snapshot(
-            Snapshot(
-                position=held.position,
-                activity=self._activity,
-                battery=self._battery(),
-                cargo=held.cargo,
-                mission=held.mission_held,
-            )
-        )
+        self.link.snapshot(self.telling.snapshot())
 
     def _shows(self, activity: Activity) -> None:
-        self._activity = activity
+        self.telling.activity = activity
         self._tells()
-
-    def _battery(self) -> Battery:
-        return Battery(ratio=self.body.ratio, charging=self.body.charging, docked=self.body.docked)
-
-    def _hello(self) -> Hello:
-        held = self.missions.held
-        return Hello(
-            position=held.position,
-            cargo=held.cargo,
-            mission=held.mission_held,
-            battery=self._battery(),
-            software="simulated",
-            map_version=self.track.version,
-            understands=YOUNGER,
-            home=self.home,
-        )
 
     # What it does.
 

@@ -181,6 +181,7 @@ class Route:
 
     def was_moved(self, place: str) -> None:
         """A person has put it down here, and it has read where that is."""
+        self.missions.occupancy.forget()
         self.missions.seen(place)
         self.crossed = []
         self.missions.claims.clear(self.missions.held.grants)
