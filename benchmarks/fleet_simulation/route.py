@@ -44,7 +44,7 @@ class Route:
         first = way[: 2 if self.is_in_bay else 1]
         self._give_back(way)
         detour = self.detour
-        if detour is None:
+        if detour is None and not claims.may_enter(first):
             self._claim = claims.ask(way, goal) or self._claim
         self._give_back(way)
         if detour is not None:
