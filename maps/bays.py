@@ -76,6 +76,11 @@ class Bay:
     def is_for_passing(self) -> bool:
         return not self.home and self.dock is None
 
+    @property
+    def is_lent(self) -> bool:
+        """To robots that charge."""
+        return not self.home and self.dock is not None
+
 
 def bays_of(row: PostRow, tags: Mapping[str, int | None]) -> tuple[Bay, ...]:
     """The bays of one post, in the order of the file."""

@@ -64,6 +64,11 @@ class Post:
         """On a track: it is a bay, and kept neither for one robot nor for robots that charge."""
         return self.bay_of is not None and not self.homes and self.dock is None
 
+    @property
+    def is_lent(self) -> bool:
+        """On a track: a bay with a dock that is no robot's home: it is lent to the robots that charge there."""
+        return self.bay_of is not None and not self.homes and self.dock is not None
+
 
 @dataclass(frozen=True)
 class Corridor:
@@ -174,13 +179,13 @@ class CampusMap:
     def home_at(self, name: str | None) -> str | None:
         """On a track: the home of that name or at that post; without a name the first dock of the map. None: none."""
         if name is None:
-            return next((place.name for place in self.docks()), None)
+            return next((place.name for place in self.docks() if not place.is_lent), None)
         return next((place.name for place in self.homes if name in (place.name, place.bay_of)), None)
 
     @property
     def homes(self) -> tuple[Post, ...]:
-        """On a track: where robots can be at home: in docks, and in bays that are homes."""
-        return tuple(place for place in self.posts.values() if place.dock or (place.homes and place.bay_of))
+        """On a track: where robots can be at home: in bays that are homes, and in docks where there are no bays."""
+        return tuple(place for place in self.posts.values() if (place.homes if place.bay_of else place.dock))
 
     @property
     def home_bays(self) -> tuple[Post, ...]:
@@ -195,6 +200,10 @@ class CampusMap:
             if place.bay_of:
                 bays[place.bay_of] = (*bays.get(place.bay_of, ()), place)
         return bays
+
+    def docks_to_share(self) -> tuple[str, ...]:
+        """The posts with a dock in which the map gives no robot its home; every dock of a map without bays."""
+        return tuple(post.name for post in self.docks() if any(bay.is_lent for bay in post.spurs) or not post.spurs)
 
     def docks(self) -> tuple[Post, ...]:
         """The posts that have a charging station."""

@@ -1,4 +1,4 @@
-"""Free docks: no robot stands in them or is on its way there, and they are no other robot's own."""
+"""Free docks: no robot stands in them or is on its way there, and they are no robot's own."""
 
 from typing import Final
 
@@ -11,10 +11,17 @@ UNTIL_RATIO: Final = "until_ratio"
 
 
 def free_docks(campus: CampusMap, work: OpenWork, robot: str) -> list[str]:
-    """For this robot."""
-    others = [one for one in work.robots.values() if one.name != robot]
-    taken = {one.home for one in others} | {dock for one in others for dock in docks_of(one, work)}
-    return [post.name for post in campus.docks() if post.name not in taken]
+    """For this robot, its own among them."""
+    its, others = work.robots[robot], [one for one in work.robots.values() if one.name != robot]
+    taken = {dock for one in others for dock in docks_of(one, work)}
+    known = {post.name for post in campus.docks()} & {its.home}
+    return [dock for dock in (*known, *shared_docks(campus, work)) if dock not in taken]
+
+
+def shared_docks(campus: CampusMap, work: OpenWork) -> list[str]:
+    """Those in which no robot has its home."""
+    own = {robot.home for robot in work.robots.values()}
+    return [dock for dock in campus.docks_to_share() if dock not in own]
 
 
 def docks_of(robot: RobotNow, work: OpenWork) -> list[str]:

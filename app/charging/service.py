@@ -16,7 +16,7 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.charging.dock_room import driving_there, leaving, parking
-from app.charging.free_docks import UNTIL_RATIO, docks_of, taken_docks
+from app.charging.free_docks import UNTIL_RATIO, docks_of, shared_docks, taken_docks
 from app.core.polling import PollingLoop
 from app.dispatch.charge_limits import THRESHOLDS, Charges
 from app.dispatch.open_work import OpenWork, RobotNow, StopNow, read_open_work
@@ -98,8 +98,7 @@ class ChargingService:
 
     def _moves(self, work: OpenWork, now: datetime) -> tuple[list[Move], set[str]]:
         """To docks that are free; and who leaves one."""
-        own = {robot.home for robot in work.robots.values()}
-        docks = [post.name for post in self.fleet.campus.docks() if post.name not in own]
+        docks = shared_docks(self.fleet.campus, work)
         needs = {robot.name: self._need(robot, work, docks) for robot in work.robots.values() if _needs_one(robot)}
         resting = [need for name, need in needs.items() if self._may_be_sent(work.robots[name], work)]
         plan = plan_docks(list(needs.values()), docks, ASSUMED, THRESHOLDS, self.fleet.clock.now())
@@ -154,11 +153,16 @@ class ChargingService:
         async with self.fleet.database.transaction() as session:
             robot = await known_robot(session, name, to_change=True)
             work = await read_open_work(session, now)
-            post = parking(self.fleet.campus, work, work.robots[name], self.fleet.orders.ledger.ways)
+            post = self._place_to_park(robot, work)
             if post is not None and self._may_be_sent(work.robots[name], work) and robot.docked:
                 stop = StopRow(id=new_id(), mission_id=new_id(), position=0, post=post, action=StopAction.PARK)
                 await self._tell(session, robot, stop)
                 log.info("makes_room_in_dock", robot=name, dock=robot.post, post=post)
+
+    def _place_to_park(self, robot: RobotRow, work: OpenWork) -> str | None:
+        if robot.home_bay is not None:
+            return self.fleet.campus.address_of(robot.home_bay)
+        return parking(self.fleet.campus, work, work.robots[robot.name], self.fleet.orders.ledger.ways)
 
     async def _tell(self, session: AsyncSession, robot: RobotRow, stop: StopRow) -> None:
         """A mission of this one stop."""
@@ -186,4 +190,6 @@ class ChargingService:
 
 
 def _needs_one(robot: RobotNow) -> bool:
-    return robot.is_there and robot.home is None and robot.post is not None and robot.battery_ratio is not None
+    """One with a dock of its own needs no other, but may stand in one."""
+    stays_out = robot.home is None or (robot.docked and robot.post != robot.home)
+    return bool(robot.is_there and stays_out and robot.post is not None and robot.battery_ratio is not None)

@@ -56,6 +56,7 @@ class Charges:
     def __post_init__(self) -> None:
         self._assumed = usual_rates()
         self._docks = frozenset(post.name for post in self.ways.campus.docks())
+        self._shared = frozenset(self.ways.campus.docks_to_share())
 
     def may_take(self, robot: IdleRobot, order: WaitingOrder) -> bool:
         """Also what is more than one charge, once it is as full as it gets: it charges on the way then."""
@@ -70,7 +71,7 @@ class Charges:
         """Unknown ways cost nothing: they are not what keeps a robot from work."""
         charge = Charge(ratio, self.rates.get(robot.name, self._assumed), docked=bool(robot.docked or robot.charging))
         way_m = self._length_m(robot.post, order.from_post) + self._length_m(order.from_post, order.to_post)
-        work, to_dock = self._use(way_m, handovers=2), self._use(self._to_dock_m(order.to_post))
+        work, to_dock = self._use(way_m, handovers=2), self._use(self._to_dock_m(order.to_post, robot))
         return accepts(charge, work, to_dock, THRESHOLDS)
 
     def drives_s(self, robot: Charged) -> float:
@@ -92,14 +93,14 @@ class Charges:
         ratio, rates = robot.battery_ratio, self.rates.get(robot.name, self._assumed)
         if ratio is None or robot.docked or ratio >= THRESHOLDS.full - THRESHOLDS.hysteresis:
             return True  # there is no more to be had, or nothing known
-        leg, to_dock = self._way(way), self._use(self._to_dock_m(way[-1]))
+        leg, to_dock = self._way(way), self._use(self._to_dock_m(way[-1], robot))
         return goes_on(Charge(ratio, rates), leg, to_dock, THRESHOLDS)
 
     def needed(self, robot: Charged, posts: Sequence[str]) -> float:
         """For stops at these posts one after the other, and to a dock after them: no more than there is in a pack. Out
         of a dock it begins nothing with less than `Thresholds.begin`."""
         rates = self.rates.get(robot.name, self._assumed)
-        work = self._way((robot.post, *posts)) + self._use(0.0, len(posts)) + self._use(self._to_dock_m(posts[-1]))
+        work = self._way((robot.post, *posts)) + self._use(self._to_dock_m(posts[-1], robot), len(posts))
         least = LEAVES_DOCK if robot.docked else 0.0
         return min(THRESHOLDS.full, max(least, THRESHOLDS.low + rates.at_most(work)))
 
@@ -127,8 +128,9 @@ class Charges:
         settings = self.settings
         return Use(way_m, way_m / settings.assumed_speed_m_s + handovers * settings.assumed_handover_s)
 
-    def _to_dock_m(self, post: str) -> float:
-        return min((self._length_m(post, dock) for dock in self._docks), default=0.0)
+    def _to_dock_m(self, post: str, robot: Charged) -> float:
+        docks = self._shared | {robot.home} if robot.home in self._docks else self._shared
+        return min((self._length_m(post, dock) for dock in docks if dock), default=0.0)
 
     def _length_m(self, from_post: str | None, to_post: str) -> float:
         length_m = self.ways.length_m(from_post, to_post)

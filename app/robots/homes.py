@@ -51,13 +51,15 @@ async def check_home(
 
 
 async def note_home(session: AsyncSession, campus: CampusMap, robot: RobotRow, hello: Hello) -> str | None:
-    """Write down its home; return it if the service gives it. For all but the traffic its post is its home."""
+    """Write down its home; return it if the service gives it. One without a dock is a home for the traffic alone: a
+    robot does not charge there."""
     given = None
     if campus.track.home_bays and GIVEN in hello.understands:
         given = await free_home(session, campus, robot.name, _wanted(robot, hello))
     home = given or hello.home
-    robot.home = home and campus.address_of(home)
-    robot.home_bay = home if home != robot.home else None
+    bay = campus.track.posts.get(home or "")
+    robot.home_bay = bay.name if bay and bay.bay_of else None
+    robot.home = None if robot.home_bay and not (bay and bay.dock) else home and campus.address_of(home)
     return given
 
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from app.traffic.bays import free_bay
-from app.traffic.robot_locations import Hold, RobotLocation, TrafficSnapshot
 from app.traffic.schedule import Elsewhere, HasToWait, Leg, MayEnter, TrafficSchedule, Verdict
+from app.traffic.snapshot import Hold, RobotLocation, TrafficSnapshot
 from app.traffic.standing import bay_ahead, lanes_of, standing
 from fleet.schedule.controller import ComeIn, Denied, GoOn, Granted, LetIn, Waits
 from fleet.schedule.network import Lane
@@ -79,7 +79,7 @@ class BayTrafficSchedule(TrafficSchedule):
         asked = next((leg for leg in one.request.legs if self._is_lane(leg)), None)
         if asked is None or asked[0] != post:
             return self._aside(one, bay, post, now_s, asked=True)
-        if one.goals and one.goals[0][1] == one.request.goal == post:
+        if one.goals and one.goals[0].post == one.request.goal == post:
             return None  # first it does here what it has to do
         answer = self.controller.claims(one.robot, *asked, now_s)
         if isinstance(answer, Denied) and answer.instead is not None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
-from app.traffic.robot_locations import RobotLocation
+from app.traffic.snapshot import RobotLocation
 from maps import CampusMap, corridor_name
 
 

@@ -1,97 +1,19 @@
 """Where every robot is and what it wishes, as the database has it: all that the schedule is made from."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from datetime import datetime
-from itertools import takewhile
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
-from sqlmodel import col, func, select, tuple_
+from sqlmodel import and_, col, func, select, tuple_
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.models import ClaimRow, GrantRow, MissionRow, MissionState, OccupancyRow, RobotRow, StopRow
 from app.robots.corridors.closures import closed_names
-from maps import CampusMap, corridor_name
-from protocol.parts import Activity
-
-OF_ITS_OWN: Final = "own"
-"""The key of a place that a robot goes to for reasons of its own, to a dock for instance."""
-
-
-@dataclass(frozen=True)
-class ReservationRequest:
-    """A claim that waits. `first`: the corridors that the robot may enter first; several if it does not know which way
-    it looks. `goal`: where it is going to now. `then`: the corridors after the first, as far as there."""
-
-    claim_id: str
-    first: tuple[tuple[str, str], ...]
-    goal: str
-    then: tuple[tuple[str, str], ...] = ()
-    legs: tuple[tuple[str, str], ...] = ()
-    """All of them, as the robot named them: spurs and corridors of the track."""
-
-    @property
-    def is_for_later(self) -> bool:
-        """It asks on its way for what comes after the place where it is going to now."""
-        return self.goal == self.first[0][0]
-
-
-@dataclass(frozen=True)
-class Hold:
-    """A corridor that a robot may be in."""
-
-    from_post: str
-    to_post: str
-    grant_id: int = field(default=0, compare=False)
-
-    @property
-    def corridor(self) -> str:
-        return corridor_name(self.from_post, self.to_post)
-
-
-@dataclass(frozen=True)
-class Occupied:
-    """A bay, a crossing or a corridor that a robot says to be wholly in: `place`, see `OccupancyRow`."""
-
-    kind: str
-    place: str
-    towards: str | None = None
-
-
-@dataclass(frozen=True)
-class RobotLocation:
-    """One robot. `goals`: key and post of all that it has before it, in order. `stopped`: a person or something keeps
-    it where it is, and it has said so. `occupies` and `home_bay`: on maps with bays."""
-
-    robot: str
-    post: str
-    seen_at: datetime | None
-    home: str | None
-    at_home: bool
-    online: bool
-    holds: tuple[Hold, ...]
-    goals: tuple[tuple[str, str], ...]
-    request: ReservationRequest | None
-    stopped: bool
-    heard_at: datetime | None
-    occupies: Occupied | None = None
-    home_bay: str | None = None
-
-    @property
-    def way(self) -> tuple[Hold, ...]:
-        """Those of its corridors that it goes through one after the other. What it holds besides is the other way out
-        of where it stood, if it did not know which way it looks."""
-        ends = [hold.to_post for hold in self.holds]
-        further = takewhile(lambda pair: pair[0] == pair[1].from_post, zip(ends, self.holds[1:], strict=False))
-        return (*self.holds[:1], *(hold for _, hold in further))
-
-
-@dataclass(frozen=True)
-class TrafficSnapshot:
-    """A snapshot of the traffic: all robots whose place is known, by name, and the corridors that are closed."""
-
-    robots: Mapping[str, RobotLocation]
-    closed: frozenset[str]
+from app.traffic.lent_docks import with_lent_docks
+from app.traffic.snapshot import OF_ITS_OWN, Hold, Occupied, ReservationRequest, RobotLocation, Stop, TrafficSnapshot
+from fleet.charging.curve import FULL
+from maps import CampusMap
+from protocol.parts import Activity, StopAction
 
 
 async def read_traffic(session: AsyncSession, campus: CampusMap) -> TrafficSnapshot:
@@ -114,7 +36,7 @@ async def read_traffic(session: AsyncSession, campus: CampusMap) -> TrafficSnaps
         for row in rows
         if row.post in campus.posts and (not has_bays or row.name in occupied)
     }
-    return TrafficSnapshot(robots, closed)
+    return TrafficSnapshot(with_lent_docks(campus.track, robots), closed)
 
 
 async def where_they_left(session: AsyncSession, snapshot: TrafficSnapshot) -> TrafficSnapshot:
@@ -143,11 +65,12 @@ def _robot_location(
     row: RobotRow,
     holds: tuple[Hold, ...],
     request: ReservationRequest | None,
-    goals: tuple[tuple[str, str], ...],
+    goals: tuple[Stop, ...],
     occupies: Occupied | None,
 ) -> RobotLocation:
     post = row.post or ""
-    home = row.home if row.home in campus.posts else next((dock.name for dock in campus.docks()), None)
+    named = campus.address_of(row.home_bay) if row.home_bay else row.home
+    home = named if named in campus.posts else next((dock.name for dock in campus.docks()), None)
     rests = row.activity in (Activity.IDLE, Activity.CHARGING)
     docked = rests if row.docked is None else row.docked
     return RobotLocation(
@@ -158,33 +81,34 @@ def _robot_location(
         at_home=docked and post == home if occupies is None else occupies.place == row.home_bay,
         online=row.online,
         holds=holds,
-        goals=_with_its_own(request, goals),
+        goals=_with_its_own(row, request, goals),
         request=request,
         stopped=row.activity == Activity.STOPPED,
         heard_at=row.heard_at,
         occupies=occupies,
         home_bay=row.home_bay,
+        battery_ratio=row.battery_ratio,
     )
 
 
-def _with_its_own(
-    request: ReservationRequest | None, goals: tuple[tuple[str, str], ...]
-) -> tuple[tuple[str, str], ...]:
+def _with_its_own(row: RobotRow, request: ReservationRequest | None, goals: tuple[Stop, ...]) -> tuple[Stop, ...]:
     """Put first what it goes to now, whatever its mission says: the robot knows best when it has to charge."""
-    if request is None or request.is_for_later or (goals and goals[0][1] == request.goal):
+    if request is None:
+        charges = row.activity == Activity.CHARGING and goals and goals[0].charges_to is None
+        return (Stop(OF_ITS_OWN, row.post or "", FULL), *goals) if charges else goals
+    if request.is_for_later or (goals and goals[0].post == request.goal):
         return goals
-    return ((OF_ITS_OWN, request.goal), *goals)
+    return (Stop(OF_ITS_OWN, request.goal), *goals)
 
 
 async def _holds(session: AsyncSession) -> dict[str, list[Hold]]:
     held: dict[str, list[Hold]] = {}
-    rows = (
-        await session.exec(select(GrantRow).where(col(GrantRow.cleared_at).is_(None)).order_by(col(GrantRow.id)))
-    ).all()
-    for row in rows:
+    asked = and_(col(ClaimRow.robot) == col(GrantRow.robot), col(ClaimRow.claim_id) == col(GrantRow.claim_id))
+    granted = select(GrantRow, ClaimRow.goal).outerjoin(ClaimRow, asked).where(col(GrantRow.cleared_at).is_(None))
+    for row, goal in (await session.exec(granted.order_by(col(GrantRow.id)))).all():
         known = held.setdefault(row.robot, [])
         if all((one.from_post, one.to_post) != (row.from_post, row.to_post) for one in known):
-            known.append(Hold(row.from_post, row.to_post, row.id or 0))
+            known.append(Hold(row.from_post, row.to_post, row.id or 0, goal))
     return held
 
 
@@ -213,7 +137,7 @@ def _request(row: ClaimRow, campus: CampusMap) -> ReservationRequest:
     goal = campus.address_of(row.goal or legs[-1][1])
     to_goal = next((number for number, leg in enumerate(legs, start=1) if leg[1] == goal), len(legs))
     then = tuple(legs[1:to_goal]) if len(first) == 1 else ()
-    return ReservationRequest(row.claim_id, tuple(first), goal, then, tuple(legs))
+    return ReservationRequest(row.claim_id, tuple(first), goal, then, tuple(legs), row.goal or legs[-1][1])
 
 
 _LAST_LEFT: Final = (
@@ -228,16 +152,17 @@ _LAST_LEFT: Final = (
 """Not the one that was granted last: what a robot may enter besides its way is cleared first."""
 
 
-async def _goals(session: AsyncSession) -> dict[str, list[tuple[str, str]]]:
+async def _goals(session: AsyncSession) -> dict[str, list[Stop]]:
     over = (StopRow.done_at, StopRow.gave_up_at, StopRow.dropped_at)
     left = (
-        select(MissionRow.robot, StopRow.id, StopRow.post)
+        select(MissionRow.robot, StopRow)
         .where(col(StopRow.mission_id) == col(MissionRow.id), col(MissionRow.state) == MissionState.ACTIVE)
         .where(*(col(at).is_(None) for at in over))
         .order_by(col(MissionRow.created_at), col(StopRow.position))
     )
-    goals: dict[str, list[tuple[str, str]]] = {}
-    for robot, stop, post in (await session.exec(left)).all():
-        if post:
-            goals.setdefault(robot, []).append((stop, post))
+    goals: dict[str, list[Stop]] = {}
+    for robot, stop in (await session.exec(left)).all():
+        charges_to = (stop.until_ratio or FULL) if stop.action == StopAction.DOCK else None
+        if stop.post:
+            goals.setdefault(robot, []).append(Stop(stop.id, stop.post, charges_to))
     return goals

@@ -13,7 +13,8 @@ from typing import Final
 import structlog
 
 from app.core.settings import Settings
-from app.traffic.robot_locations import OF_ITS_OWN, Hold, RobotLocation, TrafficSnapshot
+from app.traffic.snapshot import OF_ITS_OWN, Hold, RobotLocation, Stop, TrafficSnapshot
+from fleet.charging.curve import ASSUMED
 from fleet.eta.arrivals import Estimates
 from fleet.schedule.answers import ComeIn, Denied, Granted, Waits
 from fleet.schedule.controller import TrafficController
@@ -168,10 +169,16 @@ class TrafficSchedule:
     def _wanted(self, now: RobotLocation) -> tuple[Goal, ...]:
         number = self.controller.network.number_of
         return tuple(
-            Goal(number(post), 0.0 if key == OF_ITS_OWN else self.settings.assumed_handover_s, key=key)
-            for key, post in now.goals
-            if post in self.campus.posts
+            Goal(number(stop.post), self._takes_s(stop, now), key=stop.key)
+            for stop in now.goals
+            if stop.post in self.campus.posts
         )
+
+    def _takes_s(self, stop: Stop, now: RobotLocation) -> float:
+        """A charge takes hours: others that would go after it on the schedule go before it."""
+        if stop.charges_to is not None:
+            return ASSUMED.time_s(now.battery_ratio or 0.0, stop.charges_to)
+        return 0.0 if stop.key == OF_ITS_OWN else self.settings.assumed_handover_s
 
     def _follow_standing(self, now: RobotLocation, now_s: float) -> None:
         stands = now.stopped or now.robot in self.vanished
@@ -189,7 +196,7 @@ class TrafficSchedule:
         for name, one in self._known.items():
             if one.request is None or one.holds or not one.online or name in self._frozen:
                 continue
-            if one.request.is_for_later and one.goals and one.goals[0][1] == one.request.goal:
+            if one.request.is_for_later and one.goals and one.goals[0].post == one.request.goal:
                 continue  # first it does there what it has to do
             verdict = self._verdict(one, understood.get(name, False), now_s)
             if isinstance(verdict, MayEnter):
@@ -266,8 +273,8 @@ def _spare(one: RobotLocation) -> frozenset[str]:
 def _on_its_way(before: RobotLocation | None, now: RobotLocation) -> RobotLocation:
     """A place to which it goes for reasons of its own is where it goes until it is there, asks for another way, or
     takes back what it waited for or was granted."""
-    own = before.goals[0] if before and before.goals and before.goals[0][0] == OF_ITS_OWN else None
-    is_there = not now.holds and own is not None and now.post == own[1]
+    own = before.goals[0] if before and before.goals and before.goals[0].key == OF_ITS_OWN else None
+    is_there = not now.holds and own is not None and now.post == own.post
     if before is None or own is None or is_there or now.request is not None or _gave_up(before, now):
         return now
     return replace(now, goals=(own, *now.goals))

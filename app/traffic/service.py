@@ -19,8 +19,9 @@ from app.robots.alarms import VANISHED, clear_alarms, raise_alarm
 from app.robots.corridors.occupied import tell_of_traffic
 from app.robots.service import Fleet, known_robot
 from app.traffic.bay_schedule import BayTrafficSchedule
-from app.traffic.robot_locations import RobotLocation, TrafficSnapshot, left_at, read_traffic, where_they_left
+from app.traffic.robot_locations import left_at, read_traffic, where_they_left
 from app.traffic.schedule import Elsewhere, HasToWait, MayEnter, TrafficSchedule, Verdict
+from app.traffic.snapshot import RobotLocation, TrafficSnapshot
 from maps import corridor_name
 from protocol.parts import Leg
 from protocol.to_robot import Deny, Detour, Grant

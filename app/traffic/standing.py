@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from app.traffic.robot_locations import Hold, RobotLocation
+from app.traffic.snapshot import Hold, RobotLocation
 from fleet.schedule.placing import Place
 from maps import CampusMap, corridor_name
 

@@ -16,12 +16,13 @@ from benchmarks.fleet_simulation.people import People
 from benchmarks.fleet_simulation.robot_link import RobotLink
 from benchmarks.fleet_simulation.route import Crossing, Route
 from benchmarks.fleet_simulation.telling import Telling
-from maps import CampusMap, NoRoute, shortest_route
+from maps import CampusMap, NoRoute
 from protocol.clock import Clock
 from protocol.parts import Activity, Leg, Purpose, Stop, StopAction
 from protocol.to_server import Step
 from robot.agent.perception.battery import BatteryLevel
 from robot.localization.bays import places_to_stand
+from robot.localization.docks import nearest_dock
 from robot.mission.memory import Memory
 from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
@@ -214,8 +215,9 @@ class Mind:
             await self._news_comes(Activity.CHARGING)
 
     def _nearest_dock(self) -> str:
-        docks = [bay.name for bay in self.track.docks()]
-        return min(docks, key=lambda dock: shortest_route(self.track, self.body.post, dock).length_m)
+        near = nearest_dock(self.track, self.body.post, self.home, frozenset())
+        assert near is not None
+        return near
 
     async def _dock(self) -> None:
         self._shows(Activity.DRIVING)

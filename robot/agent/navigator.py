@@ -270,10 +270,11 @@ class Navigator(Tracker):
         return left_mm if left_mm > -1000 * SURELY_PAST_M else None
 
     def nearest_dock(self) -> str | None:
-        """The dock with the shortest way from here that is open; the robot's own while the place is unknown."""
-        asked = (self.here, self._duties.claims.avoid, self.closed.names)
+        """Of its own dock and those that are lent the one with the shortest way that is open; its own home while the
+        place is unknown."""
+        asked = (self.here, self.home, self._duties.claims.avoid, self.closed.names)
         if asked != self._nearest[0]:
-            near = nearest_dock(self.campus, self.here, self._avoided()) if self.here else self.home
+            near = nearest_dock(self.campus, self.here, self.home, self._avoided()) if self.here else self.home
             self._nearest = (asked, near)
         return self._nearest[1]
 

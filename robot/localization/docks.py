@@ -8,10 +8,11 @@ from maps.geometry import wrapped
 STRAIGHT_ON_RAD = math.radians(30)
 
 
-def nearest_dock(campus: CampusMap, here: str, avoid: frozenset[str]) -> str | None:
-    """The post of the dock with the shortest way; None where no way is open."""
+def nearest_dock(campus: CampusMap, here: str, home: str | None, avoid: frozenset[str]) -> str | None:
+    """The place of the dock with the shortest way; None where no way is open. A bay that is another's home stays free
+    for it."""
     reachable: list[tuple[float, str]] = []
-    for dock in campus.docks():
+    for dock in (one for one in campus.docks() if one.bay_of is None or one.is_lent or one.name == home):
         try:
             reachable.append((shortest_route(campus, here, dock.name, avoid).length_m, dock.name))
         except NoRoute:

@@ -42,7 +42,9 @@ def test_the_carleton_tunnels_say_that_their_lengths_are_assumed():
     assert (len(carleton.posts), len(carleton.corridors)) == (15, 16)
     assert all(corridor.assumed for corridor in carleton.corridors)
     assert "lengths and bays are assumed" in carleton.note
-    assert {post.name for post in carleton.docks()} == {"uc", "commons", "canal", "mackenzie"}
+    own, shared = {"uc", "commons", "canal", "mackenzie"}, {"southam", "frontenac", "cttc"}
+    assert {post.name for post in carleton.docks()} == own | shared
+    assert set(carleton.docks_to_share()) == shared
 
 
 @pytest.mark.parametrize(

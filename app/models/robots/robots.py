@@ -14,11 +14,12 @@ class RobotRow(SQLModel, table=True):
 
     `online` says that its socket is open now; every start of the service begins with no robot online. `public_key`
     (Ed25519, base64) is what its receipts are signed with; None: enrolled without one. `clock_off_s` is how far its
-    clock was ahead at its last hello, or when it was seen to have been set since. `home` and `docked` as it says;
-    None: it has not said. `home_bay`: the bay of its home post, on maps with bays. `waits_for`: the corridor it wishes
-    to enter, for which robots, until about when. `taken_out_at`: a person has given its corridors to others, and it has
-    not heard so yet. `proves_since`: from then on its receipts prove that a code was shown; it stays even if a later
-    hello does not say so, until it is enrolled again.
+    clock was ahead at its last hello, or when it was seen to have been set since. `docked` as it says; None: it has
+    not said. `home`: the post in whose dock it rests; `home_bay`: on maps with bays the bay that is its home, which
+    counts for the traffic whether it has a dock or not. `waits_for`: the corridor it wishes to enter, for which robots,
+    until about when. `taken_out_at`: a person has given its corridors to others, and it has not heard so yet.
+    `proves_since`: from then on its receipts prove that a code was shown; it stays even if a later hello does not say
+    so, until it is enrolled again.
     """
 
     __tablename__ = "robots"

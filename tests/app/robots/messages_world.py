@@ -10,8 +10,8 @@ from itertools import count, pairwise
 from random import Random
 
 from app.core.settings import Settings
-from app.traffic.robot_locations import OF_ITS_OWN, Hold, ReservationRequest, RobotLocation, TrafficSnapshot
 from app.traffic.schedule import Elsewhere, Leg, MayEnter, TrafficSchedule, Verdict
+from app.traffic.snapshot import OF_ITS_OWN, Hold, ReservationRequest, RobotLocation, Stop, TrafficSnapshot
 from maps import CampusMap, NoRoute, corridor_name, shortest_route
 
 BEGIN = datetime(2026, 1, 1, tzinfo=UTC)
@@ -45,7 +45,7 @@ class Row:
     online: bool = True
     stopped: bool = False
     request: ReservationRequest | None = None
-    goals: list[tuple[str, str]] = field(default_factory=list)
+    goals: list[Stop] = field(default_factory=list)
     heard_at: datetime = BEGIN
 
 
@@ -159,7 +159,7 @@ class World:
 
         self._say(robot, write)
 
-    def _goals(self, robot: Robot) -> list[tuple[str, str]]:
+    def _goals(self, robot: Robot) -> list[Stop]:
         return self.rows[robot.name].goals
 
     def _go_on(self, robot: Robot) -> None:
@@ -246,7 +246,7 @@ class World:
 
     def _order(self, robot: Robot) -> None:
         if len(self._goals(robot)) < 3:
-            self._goals(robot).append((f"g{next(self._numbers)}", self.rng.choice(sorted(self.campus.posts))))
+            self._goals(robot).append(Stop(f"g{next(self._numbers)}", self.rng.choice(sorted(self.campus.posts))))
 
     def _drop(self, robot: Robot) -> None:
         goals = self._goals(robot)
@@ -307,7 +307,7 @@ class World:
             at_home=row.docked and row.post == robot.home,
             online=row.online,
             holds=holds,
-            goals=(((OF_ITS_OWN, row.request.goal),) if row.request and own else ()) + tuple(row.goals),
+            goals=((Stop(OF_ITS_OWN, row.request.goal),) if row.request and own else ()) + tuple(row.goals),
             request=row.request,
             stopped=row.stopped,
             heard_at=row.heard_at,

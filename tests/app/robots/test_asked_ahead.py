@@ -3,12 +3,12 @@
 from dataclasses import replace
 
 from app.core.settings import Settings
-from app.traffic.robot_locations import ReservationRequest, RobotLocation, TrafficSnapshot
 from app.traffic.schedule import HasToWait, MayEnter, TrafficSchedule
+from app.traffic.snapshot import ReservationRequest, RobotLocation, Stop, TrafficSnapshot
 from tests.plain_maps import plain_map
 
 WAY = (("post1", "post2"), ("post2", "post3"), ("post3", "post4"))
-LOADS, GIVES = ("load", "post1"), ("give", "post4")
+LOADS, GIVES = Stop("load", "post1"), Stop("give", "post4")
 ASKS_WHILE_IT_COMES = RobotLocation(
     robot="r1",
     post="post1",

@@ -17,7 +17,7 @@ from tests.app.robots.playing import PlayedRobot, Service
 
 MAP: Final = Path(__file__).parents[2] / "bays.toml"
 TRACK: Final[CampusMap] = find_map(MAP).track
-UNDERSTANDS: Final = ("confirm", "watch", "open_way", "detour", "revoke", "home")
+UNDERSTANDS: Final = ("confirm", "watch", "open_way", "detour", "revoke", "home", "until_ratio")
 ANSWER_WITHIN_S: Final = 60.0
 
 

@@ -11,8 +11,8 @@ from app.core.settings import Settings
 from app.traffic.bay_schedule import BayTrafficSchedule
 from app.traffic.bays import free_bay
 from app.traffic.reopening import corridor_on
-from app.traffic.robot_locations import Hold, Occupied, ReservationRequest, RobotLocation, TrafficSnapshot
 from app.traffic.schedule import Elsewhere, MayEnter, Verdict
+from app.traffic.snapshot import Hold, Occupied, ReservationRequest, RobotLocation, Stop, TrafficSnapshot
 from maps import find_map
 from tests.app.traffic.bay_travelling import MAP
 
@@ -24,7 +24,7 @@ GUEST: Final = RobotLocation(
     at_home=False,
     online=True,
     holds=(),
-    goals=(("stop", "post4"), ("next", "post1")),
+    goals=(Stop("stop", "post4"), Stop("next", "post1")),
     request=None,
     stopped=False,
     heard_at=None,
@@ -39,13 +39,15 @@ def asks(robot: RobotLocation, goal: str, *places: str) -> RobotLocation:
     return replace(robot, request=ReservationRequest(f"for {goal}", legs[:1], goal, legs[1:], legs))
 
 
-def verdicts(settings: Settings, *pictures: RobotLocation | tuple[RobotLocation, ...]) -> list[Verdict]:
+def verdicts(
+    settings: Settings, *pictures: RobotLocation | tuple[RobotLocation, ...], every_s: float = 1.0
+) -> list[Verdict]:
     """On the last of these pictures."""
     schedule, found = BayTrafficSchedule(find_map(MAP), settings), list[Verdict]()
-    for now_s, picture in enumerate(pictures):
-        robots = picture if isinstance(picture, tuple) else (picture,)
-        schedule.follow(TrafficSnapshot({one.robot: one for one in robots}, frozenset()), {}, float(now_s))
-        found = list(schedule.verdicts({}, float(now_s)))
+    for number, picture in enumerate(pictures):
+        robots, now_s = picture if isinstance(picture, tuple) else (picture,), number * every_s
+        schedule.follow(TrafficSnapshot({one.robot: one for one in robots}, frozenset()), {}, now_s)
+        found = list(schedule.verdicts({}, now_s))
     return found
 
 
@@ -60,7 +62,7 @@ def test_who_has_something_to_do_where_it_stands_keeps_no_corridor_from_others_m
 
 
 def test_who_goes_home_from_another_bay_of_its_post_is_let_in(settings: Settings) -> None:
-    at_home_post = replace(GUEST, post="post5", occupies=Occupied("bay", "post5_bay1"), goals=(("own", "post5"),))
+    at_home_post = replace(GUEST, post="post5", occupies=Occupied("bay", "post5_bay1"), goals=(Stop("own", "post5"),))
     home = "post5_bay1", "post5", "post5_bay2"
     assert verdicts(settings, asks(at_home_post, "post5", *home)) == [MayEnter("r1", (home[:2], home[1:]))]
 
@@ -71,7 +73,7 @@ def test_who_has_left_its_corridor_is_on_the_crossing_also_before_it_says_so(set
     settings = settings.model_copy(update={"assumed_speed_m_s": 0.002})
     behind, ahead = Hold("post2", "post3", 1), Hold("post3", "post5", 2)
     inside = replace(GUEST, goals=(), holds=(behind, ahead), occupies=Occupied("corridor", "post2", "post3"))
-    home = replace(GUEST, robot="r2", home="post4", home_bay="post4_bay2", goals=(("next", "post4"),))
+    home = replace(GUEST, robot="r2", home="post4", home_bay="post4_bay2", goals=(Stop("next", "post4"),))
     waits = replace(home, post="post3", occupies=Occupied("bay", "post3_bay1"))
     asking = asks(waits, "post4", "post3_bay1", "post3", "post4", "post4_bay1")
     there = (inside, waits)
@@ -89,7 +91,7 @@ OTHER: Final = replace(
     post="post5",
     home="post4",
     home_bay="post4_bay2",
-    goals=(("next", "post4"),),
+    goals=(Stop("next", "post4"),),
     holds=(Hold("post5", "post3", 7),),
     occupies=Occupied("corridor", "post5", "post3"),
 )
@@ -97,8 +99,9 @@ OTHER: Final = replace(
 ASKS_ON: Final = asks(OTHER, "post4", "post3", "post4", "post4_bay2")
 
 
-def may_enter(settings: Settings, *pictures: tuple[RobotLocation, ...]) -> list[str]:
-    return [one.robot for one in verdicts(settings, *pictures) if isinstance(one, MayEnter)]
+def may_enter(settings: Settings, *pictures: tuple[RobotLocation, ...], every_s: float = 1.0) -> list[str]:
+    answers = verdicts(settings, *pictures, every_s=every_s)
+    return [one.robot for one in answers if isinstance(one, MayEnter)]
 
 
 OUT: Final = Hold("post3_bay1", "post3", 1), Hold("post3", "post2", 2)
@@ -107,7 +110,9 @@ OUT: Final = Hold("post3_bay1", "post3", 1), Hold("post3", "post2", 2)
 @pytest.mark.parametrize("news", [1, 3], ids=["at once", "later"])
 def test_a_crossing_is_a_robots_until_it_says_to_be_beyond(settings: Settings, news: int) -> None:
     """From the grant on, however often the service looks, and after it has been started anew."""
-    leaves = replace(GUEST, post="post3", goals=(("next", "post2"),), occupies=Occupied("bay", "post3_bay1"), holds=OUT)
+    leaves = replace(
+        GUEST, post="post3", goals=(Stop("next", "post2"),), occupies=Occupied("bay", "post3_bay1"), holds=OUT
+    )
     assert may_enter(settings, *[(leaves, ASKS_ON)] * news) == []
     on_it = replace(leaves, occupies=Occupied("crossing", "post3"), holds=OUT[1:])
     assert may_enter(settings, *[(on_it, ASKS_ON)] * news) == []
@@ -117,7 +122,9 @@ def test_a_crossing_is_a_robots_until_it_says_to_be_beyond(settings: Settings, n
 
 def test_a_crossing_is_a_robots_that_comes_in_until_it_is_in_its_bay(settings: Settings) -> None:
     into = (Hold("post3", "post3_bay1", 3),)
-    comes = replace(GUEST, post="post3", goals=(("stop", "post3"),), occupies=Occupied("crossing", "post3"), holds=into)
+    comes = replace(
+        GUEST, post="post3", goals=(Stop("stop", "post3"),), occupies=Occupied("crossing", "post3"), holds=into
+    )
     assert may_enter(settings, (comes, ASKS_ON)) == []
     assert may_enter(settings, (comes, ASKS_ON), (comes, ASKS_ON)) == []
     stands = replace(comes, occupies=Occupied("bay", "post3_bay1"), holds=())
@@ -151,3 +158,16 @@ def test_a_bay_is_given_that_is_no_other_robots(tmp_path: Path, other: RobotLoca
 
 def test_a_spur_that_a_robot_found_blocked_can_be_opened() -> None:
     assert corridor_on(find_map(MAP), "post4-post4_bay1").b == "post4_bay1"
+
+
+def test_others_do_not_wait_for_a_robot_that_charges(settings: Settings) -> None:
+    """It goes to post4 when it has charged, which takes hours; the other comes from there and needs the same line."""
+    to_charge, then = Stop("dock", "post5", charges_to=0.9), Stop("next", "post4")
+    in_dock = Occupied("bay", "post5_bay2")
+    charges = replace(GUEST, post="post5", at_home=True, occupies=in_dock, goals=(to_charge, then), battery_ratio=0.2)
+    home = replace(GUEST, robot="r2", home="post4", home_bay="post4_bay2", at_home=True, goals=())
+    home = replace(home, occupies=Occupied("bay", "post4_bay2"))
+    comes = replace(home, goals=(Stop("load", "post5"), Stop("give", "post1")))
+    way = "post4_bay2", "post4", "post3", "post5", "post5_bay1"
+    leaves = asks(comes, "post5", *way)
+    assert may_enter(settings, *[(charges, home)] * 3, (charges, leaves), every_s=100.0) == ["r2"]

@@ -1,0 +1,47 @@
+"""Docks that are no robot's home: each is lent to the robot that stands in it or is bound for it.
+
+For as long as that lasts it rests there in the end, as it does in its home: no other is let in, and the way of all
+robots to where they rest stays what the schedule is sure of.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from app.traffic.snapshot import RobotLocation
+from maps import CampusMap, Post
+
+
+def with_lent_docks(track: CampusMap, robots: Mapping[str, RobotLocation]) -> dict[str, RobotLocation]:
+    """The same robots, with the docks that are lent to them for homes."""
+    found = dict(robots)
+    for dock in (place for place in track.docks() if place.is_lent):
+        wants = {name: how for name, one in robots.items() if (how := _how_near(track, dock, one)) is not None}
+        if wants:
+            name = min(wants, key=lambda robot: (wants[robot], robot))
+            found[name] = _at_home_in(dock, robots[name])
+    return found
+
+
+def _how_near(track: CampusMap, dock: Post, one: RobotLocation) -> int | None:
+    """It is in it or was let in (0), is sent there (1), is on its way there (2) or asks for one (3)."""
+    is_inside = one.occupies is not None and one.occupies.place == dock.name
+    if is_inside or any(hold.to_post == dock.name for hold in one.holds):
+        return None if _moves_next_door(track, dock, one) else 0
+    if one.goals and one.goals[0].charges_to is not None and one.goals[0].post == dock.bay_of:
+        return 1
+    if any(hold.goal == dock.name for hold in one.holds):
+        return 2
+    return 3 if one.request is not None and one.request.place == dock.name else None
+
+
+def _moves_next_door(track: CampusMap, dock: Post, one: RobotLocation) -> bool:
+    """Tell if it goes from the dock to its own home at the same post."""
+    if one.home_bay is None or track.address_of(one.home_bay) != dock.bay_of:
+        return False
+    asks = one.request is not None and one.request.place == one.home_bay
+    return asks or any(hold.to_post == one.home_bay for hold in one.holds)
+
+
+def _at_home_in(dock: Post, one: RobotLocation) -> RobotLocation:
+    is_inside = one.occupies is not None and one.occupies.place == dock.name
+    return replace(one, home=dock.bay_of, home_bay=dock.name, at_home=is_inside)
