@@ -15,22 +15,22 @@ from benchmarks.fleet_simulation.demand import RushHours
 from benchmarks.fleet_simulation.faults import MANY
 from benchmarks.fleet_simulation.figures import figures
 from benchmarks.fleet_simulation.grounds import Ground
+from benchmarks.fleet_simulation.judge import BAY, CORRIDOR, CROSSING
 from benchmarks.fleet_simulation.process import simulates_only
 from benchmarks.fleet_simulation.service import CALM
 from benchmarks.fleet_simulation.simulation import Fleet, Run
 
-GROUND: Final = Ground(bays=2)
+GROUND: Final = Ground()
 FLEETS: Final = {
     "four_robots": Fleet(4, GROUND, 1, faults=MANY, demand=RushHours(6.0), pace=CALM),
     "two_items_each": Fleet(4, GROUND, 2, faults=MANY, demand=RushHours(6.0), pace=CALM),
     "long_lasting_packs": Fleet(4, GROUND, 1, lasts=4.0, faults=MANY, demand=RushHours(20.0), pace=CALM),
 }
-MEETINGS: Final = ("corridor", "dock", "crossing")
-"""Two on one crossing cannot be avoided as long as posts have no bays on the floor."""
+MEETINGS: Final = BAY, CROSSING, CORRIDOR
 WANTED: Final = [
     Wanted(f"{name}.{figure}", at_most=0)
     for name in FLEETS
-    for figure in ("met.corridor", "met.dock", "met.crossing", "stuck", "astray", "too_old", "stranded")
+    for figure in (*(f"met.{place}" for place in MEETINGS), "stuck", "astray", "too_old", "stranded")
 ]
 ADDED: Final = ("robot_hours", "orders", "delivered", "arrivals", "stuck", "too_old", "stranded", "driven_km")
 
