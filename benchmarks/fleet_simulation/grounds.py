@@ -13,7 +13,7 @@ HOME, DOCK = "home = true\n", "dock = true\n"
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """`docks`: so many, the map's own first, then in its other homes; 0: as the map says."""
+    """`docks`: so many in homes, the map's own first; 0: as the map says. Docks to share stay."""
 
     name: str = "carleton"
     docks: int = 0
@@ -21,7 +21,7 @@ class Ground:
     def write(self, folder: Path) -> Path:
         """Write the map file; returns where."""
         head, *bays = builtin_path(self.name).read_text().split(BAY)
-        lacking = self.docks - sum(DOCK in bay for bay in bays)
+        lacking = self.docks - sum(DOCK in bay and HOME in bay for bay in bays)
         for number, bay in enumerate(bays):
             if lacking > 0 and HOME in bay and DOCK not in bay:
                 bays[number], lacking = bay.replace(HOME, DOCK + HOME, 1), lacking - 1
