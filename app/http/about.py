@@ -40,9 +40,21 @@ class About(BaseModel):
     map: str
 
 
+class BayView(BaseModel):
+    """A bay on the floor: a spur of tape from its post to (x_m, y_m), where the axle of a robot stands.
+
+    `home`: it is kept for the robot whose home it is."""
+
+    name: str
+    x_m: float
+    y_m: float
+    home: bool
+    dock: bool
+
+
 class PostView(BaseModel):
     """A post of the map; metres, x to the right, y up. `markers`: how many marker sheets hang there; `network`
-    false: no robot is heard there."""
+    false: no robot is heard there. `bays` is empty where robots stand on the post itself."""
 
     name: str
     title: str
@@ -52,6 +64,7 @@ class PostView(BaseModel):
     mailroom: bool
     markers: int
     network: bool
+    bays: list[BayView]
 
 
 class CorridorView(BaseModel):
@@ -119,6 +132,10 @@ def _post(post: Post) -> PostView:
         mailroom=post.mailroom,
         markers=len(post.markers),
         network=post.network,
+        bays=[
+            BayView(name=bay.name, x_m=bay.x_m, y_m=bay.y_m, home=bay.home, dock=bay.dock is not None)
+            for bay in post.spurs
+        ],
     )
 
 

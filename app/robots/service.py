@@ -155,6 +155,7 @@ class Fleet:
             case Occupancy():
                 at = put_right(message.happened_at, robot.clock_off_s)
                 await note_occupancy(session, self.campus, robot.name, message, at)
+                await tell_of_traffic(session, self.feed, robot.name)
 
     def note(self, robot: RobotRow, message: Snapshot | Why) -> None:
         """Take over what a robot says of its present state."""

@@ -1,5 +1,5 @@
-"""Which robot holds which corridor, as people may see it: those who look after robots all of it, others what concerns
-a robot that has an order of theirs."""
+"""Which robot holds which corridor, and what each reports to be in, as people may see it: those who look after robots
+all of it, others what concerns a robot that has an order of theirs."""
 
 from collections.abc import Iterable, Iterator
 from datetime import datetime
@@ -10,9 +10,10 @@ from sqlmodel import col, or_, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.core.database.database import after_commit
-from app.models import GrantRow, Order, Person, Role
+from app.models import GrantRow, OccupancyRow, Order, Person, Role
 from app.orders.transitions import ENDED
 from app.realtime.feed import Feed, FeedEvent
+from protocol.to_server import Where
 
 SEE_ALL = (Role.DISPATCHER, Role.MAINTAINER)
 
@@ -27,26 +28,46 @@ class OccupiedCorridor(BaseModel):
     since: datetime
 
 
+class ReportedPlace(BaseModel):
+    """What a robot reports to be wholly in, on maps with bays.
+
+    The bay `place`, the crossing of the post `place`, or the corridor from `place` to `towards`."""
+
+    robot: str
+    kind: Where
+    place: str
+    towards: str | None
+    at: datetime
+
+
 class Traffic(BaseModel):
-    """Every corridor that is taken, by robot, each robot's in the order in which it was granted them."""
+    """Every corridor that is taken, by robot, each robot's in the order in which it was granted them; and what each
+    robot reports to be in."""
 
     taken: list[OccupiedCorridor]
+    reported: list[ReportedPlace]
 
 
 class RobotTraffic(BaseModel):
-    """Every corridor that this robot holds now: it replaces what was known of it."""
+    """Every corridor that this robot holds now, and what it reports to be in: both replace what was known of it."""
 
     robot: str
     taken: list[OccupiedCorridor]
+    reported: ReportedPlace | None
 
 
 async def traffic_for(session: AsyncSession, person: Person) -> Traffic:
     """Return what this person may see of it."""
-    held = select(GrantRow).where(col(GrantRow.cleared_at).is_(None))
+    held, reported = select(GrantRow).where(col(GrantRow.cleared_at).is_(None)), select(OccupancyRow)
     if not any(person.has_role(role) for role in SEE_ALL):
-        held = held.where(col(GrantRow.robot).in_(await _robots_of(session, person)))
+        robots = await _robots_of(session, person)
+        held, reported = (
+            held.where(col(GrantRow.robot).in_(robots)),
+            reported.where(col(OccupancyRow.robot).in_(robots)),
+        )
     rows = (await session.exec(held.order_by(col(GrantRow.robot), col(GrantRow.id)))).all()
-    return Traffic(taken=list(_each_once(rows)))
+    places = (await session.exec(reported.order_by(OccupancyRow.robot))).all()
+    return Traffic(taken=list(_each_once(rows)), reported=[_reported(row) for row in places])
 
 
 async def tell_of_traffic(session: AsyncSession, feed: Feed, robot: str) -> None:
@@ -56,12 +77,17 @@ async def tell_of_traffic(session: AsyncSession, feed: Feed, robot: str) -> None
         return
     held = select(GrantRow).where(GrantRow.robot == robot, col(GrantRow.cleared_at).is_(None))
     rows = (await session.exec(held.order_by(col(GrantRow.id)))).all()
-    news = RobotTraffic(robot=robot, taken=list(_each_once(rows)))
+    place = (await session.exec(select(OccupancyRow).where(OccupancyRow.robot == robot))).one_or_none()
+    news = RobotTraffic(robot=robot, taken=list(_each_once(rows)), reported=place and _reported(place))
     people = await _people_of(session, robot)
     theirs = [FeedEvent("traffic", news, person_id=person_id) for person_id in sorted(people)]
     by_role = [FeedEvent("traffic", news, role=role, except_for=people) for role in SEE_ALL]
     for happening in (*theirs, *by_role):
         after_commit(session, partial(feed.publish, happening))
+
+
+def _reported(row: OccupancyRow) -> ReportedPlace:
+    return ReportedPlace.model_validate(row, from_attributes=True)
 
 
 async def _robots_of(session: AsyncSession, person: Person) -> set[str]:

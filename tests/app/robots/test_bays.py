@@ -9,6 +9,7 @@ from websockets.exceptions import ConnectionClosed
 
 from app.core.settings import Settings
 from app.models import Alarm, OccupancyRow, RobotRow
+from app.robots.corridors.occupied import traffic_for
 from app.robots.enrolment.errors import NoHomeForRobot
 from app.robots.service import known_robot, revoke_tokens
 from app.traffic.out_of_service import take_out
@@ -17,6 +18,7 @@ from protocol.clock import SteppedClock
 from protocol.parts import Leg
 from protocol.to_server import Clear, Occupancy
 from tests.app.robots.playing import PlayedRobot, Service, serving, until
+from tests.app.robots.test_occupied import DISPATCHER, STRANGER
 
 MAP = Path(__file__).parents[2] / "bays.toml"
 
@@ -70,6 +72,24 @@ async def test_what_the_map_does_not_have_is_not_believed(
         assert isinstance(error, Error)
         assert error.code == "unknown_corridor"
         assert await service.rows(OccupancyRow) == []
+
+
+async def test_dispatchers_see_what_a_robot_reports_to_be_in_and_members_without_an_order_do_not(
+    service: Service, robot: PlayedRobot
+) -> None:
+    robot.token = await service.enrol("r1")
+    feed = service.app.state.parts.feed
+    async with robot.connected(service.url, robot.token):
+        await robot.greet("post1_bay1", home="post5_bay2")
+        with feed.listening(DISPATCHER) as dispatchers, feed.listening(STRANGER) as strangers:
+            await robot.ends(await robot.say(occupies(robot, "corridor", "post1", "post2")))
+            heard = [queue.get_nowait().happening for queue in (dispatchers, strangers) for _ in range(queue.qsize())]
+    (news,) = [one.data for one in heard if one.event == "traffic"]
+    assert (news.robot, news.taken, news.reported.kind) == ("r1", [], "corridor")
+    async with service.app.state.parts.database.reading() as session:
+        (place,) = (await traffic_for(session, DISPATCHER)).reported
+        assert (place.robot, place.place, place.towards) == ("r1", "post1", "post2")
+        assert (await traffic_for(session, STRANGER)).reported == []
 
 
 async def test_people_see_a_robot_in_a_bay_at_its_post(service: Service, robot: PlayedRobot) -> None:
