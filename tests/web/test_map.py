@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from playwright.async_api import Locator, Page, expect
 
-from maps import CampusMap, builtin_map
+from maps import CampusMap, Post, builtin_map
 
 pytestmark = pytest.mark.browser
 
@@ -23,7 +23,7 @@ DRAW = """async ([map, ...robots]) => {
   return {
     frame: box(drawn.querySelector("svg")),
     labels: [...drawn.querySelectorAll(".label")].map((text) => [text.textContent, box(text)]),
-    posts: [...drawn.querySelectorAll("circle.post")].map(box),
+    posts: [...drawn.querySelectorAll("circle.post, [data-bay]")].map(box),
   };
 }"""
 
@@ -32,10 +32,18 @@ def facts(place: object, *names: str) -> dict[str, Any]:
     return {name: getattr(place, name) for name in names}
 
 
+def bays(post: Post) -> list[dict[str, Any]]:
+    return [{**facts(bay, "name", "x_m", "y_m", "home"), "dock": bay.dock is not None} for bay in post.spurs]
+
+
 def as_sent(campus: CampusMap) -> dict[str, Any]:
     """The map as the service sends it."""
     posts = [
-        {**facts(post, "name", "title", "x_m", "y_m", "mailroom", "network"), "dock": post.dock is not None}
+        {
+            **facts(post, "name", "title", "x_m", "y_m", "mailroom", "network"),
+            "dock": post.dock is not None,
+            "bays": bays(post),
+        }
         for post in campus.posts.values()
     ]
     corridors = [
@@ -329,6 +337,6 @@ async def test_several_robots_do_not_hide_each_other_and_drawing_and_list_say_th
     assert "A person stopped the robot." in lists["r2"], "why"
     assert told["silent"] == ["post3-post4"]
     assert "No network between Post 3 and Post 4" in told["places"]
-    assert told["places"][0] == "Post 1: 2 m to Post 2"
+    assert told["places"][0] == "Post 1 (bay 1: home, bay 2): 2 m to Post 2"
     await expect(page.get_by_text("No network: robots are offline here")).to_be_visible()
     await ada.assert_accessible()

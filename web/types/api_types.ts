@@ -17,7 +17,9 @@ export type MapPost = Schemas["PostView"];
 export type MapCorridor = Schemas["CorridorView"];
 export type Traffic = Schemas["Traffic"];
 export type OccupiedCorridor = Schemas["OccupiedCorridor"];
-/** The corridors that this robot holds now. */
+/** The bay, crossing or corridor that a robot reports to be in. */
+export type ReportedPlace = Schemas["ReportedPlace"];
+/** The corridors that this robot holds now, and where it reports to be. */
 export type RobotTraffic = Schemas["RobotTraffic"];
 
 /** The closed corridors. */

@@ -116,7 +116,7 @@ export class FollowPage extends PageElement {
       <div class="column">
         <section class="card where" aria-labelledby="map-title">
           <h2 id="map-title">${t(hasEnded(order) ? "follow.map_ended" : "follow.map")}</h2>
-          <campus-map .map=${map} .robots=${hasEnded(order) || !this.robot ? [] : [this.robot]} .traffic=${this.#traffic.taken}
+          <campus-map .map=${map} .robots=${hasEnded(order) || !this.robot ? [] : [this.robot]} .traffic=${this.#traffic.taken} .reported=${this.#traffic.reported}
             .arrival=${this.#arrival(order)} .from=${order.passed_on_at_post ?? order.from_post} .to=${order.to_post} ?facts=${!hasEnded(order)}></campus-map>
         </section>
         ${orderCustody(order)} ${orderDetails(order)} ${orderActions(order, (changed) => this.#show(changed))}

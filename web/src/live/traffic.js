@@ -1,7 +1,7 @@
 /**
- * Which robot holds which corridor, as far as this person may see it: fetched, then as it changes.
+ * Which robot holds which corridor, and what each reports to be in, as far as this person may see it: fetched, then as it changes.
  * @import { ReactiveController, ReactiveControllerHost } from "lit"
- * @import { RobotTraffic, OccupiedCorridor } from "../../types/api_types.ts"
+ * @import { OccupiedCorridor, ReportedPlace, RobotTraffic } from "../../types/api_types.ts"
  */
 import * as api from "../service/api.js";
 import { OnLive } from "./live.js";
@@ -10,6 +10,8 @@ import { OnLive } from "./live.js";
 export class TrafficNow {
   /** @type {readonly OccupiedCorridor[]} */
   taken = [];
+  /** @type {readonly ReportedPlace[]} */
+  reported = [];
   /** A count of received events. */
   #heard = 0;
 
@@ -33,18 +35,19 @@ export class TrafficNow {
     const answer = await api.traffic().catch(() => null);
     if (!answer) return;
     if (heard !== this.#heard) return this.fetch(); // the answer may be older than what was heard meanwhile
-    this.#show(answer.taken);
+    this.#show(answer.taken, answer.reported);
   }
 
   /** @param {RobotTraffic} news */
-  #hear({ robot, taken }) {
+  #hear({ robot, taken, reported }) {
     this.#heard += 1;
-    this.#show([...this.taken.filter((one) => one.robot !== robot), ...taken]);
+    const ofOthers = (/** @type {{robot: string}} */ one) => one.robot !== robot;
+    this.#show([...this.taken.filter(ofOthers), ...taken], [...this.reported.filter(ofOthers), ...(reported ? [reported] : [])]);
   }
 
-  /** @param {readonly OccupiedCorridor[]} taken */
-  #show(taken) {
-    this.taken = taken;
+  /** @param {readonly OccupiedCorridor[]} taken @param {readonly ReportedPlace[]} reported */
+  #show(taken, reported) {
+    [this.taken, this.reported] = [taken, reported];
     this.host.requestUpdate();
   }
 }

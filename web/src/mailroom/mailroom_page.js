@@ -87,7 +87,7 @@ export class MailroomPage extends PageElement {
           </section>
           <section class="card" aria-labelledby="map-title">
             <h2 id="map-title" tabindex="-1">${map.title}</h2>
-            <campus-map .map=${map} .robots=${expectedWithOrders(known.robots, known.orders, serverNow())} .traffic=${this.traffic.taken} .alarms=${known.alarms}
+            <campus-map .map=${map} .robots=${expectedWithOrders(known.robots, known.orders, serverNow())} .traffic=${this.traffic.taken} .reported=${this.traffic.reported} .alarms=${known.alarms}
               .closed=${this.corridors.closed}></campus-map>
           </section>
         </div>

@@ -64,7 +64,7 @@ export class MailroomWall extends PageElement {
         </section>
         <section aria-labelledby="map-title">
           <h2 id="map-title">${t("mailroom.map")}</h2>
-          <campus-map .map=${map} .robots=${expectedWithOrders(known.robots, known.orders, serverNow())} .traffic=${this.traffic.taken} .alarms=${known.alarms}
+          <campus-map .map=${map} .robots=${expectedWithOrders(known.robots, known.orders, serverNow())} .traffic=${this.traffic.taken} .reported=${this.traffic.reported} .alarms=${known.alarms}
             .closed=${this.corridors.closed}></campus-map>
         </section>
       </div>`;

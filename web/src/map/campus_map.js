@@ -4,6 +4,7 @@
  */
 import { html, nothing } from "lit";
 import { MapCamera } from "./map_camera.js";
+import { baysOf } from "./map_bays.js";
 import { drawing, spread } from "./map_drawing.js";
 import { factsOf } from "./map_facts.js";
 import { MapGestures } from "./map_gestures.js";
@@ -15,12 +16,13 @@ import { serverNow } from "../service/server_clock.js";
 import { withStyles } from "../elements/styles_later.js";
 import { t } from "../texts/texts.js";
 import { Ticking } from "../elements/ticking.js";
-import { closedSigns, corridorLines, label, postMark, silentPlaces, occupiedBands, occupiedSigns, wayLines } from "./map_parts.js";
+import { closedSigns, corridorLines, drivingMarks, label, postMark, silentPlaces, occupiedBands, occupiedSigns, wayLines } from "./map_parts.js";
+import { inCorridors } from "./map_places.js";
 import { mapTools } from "./map_tools.js";
 import { mapLegend, placesInWords } from "./map_words.js";
 import { PageElement } from "../elements/page_element.js";
 import { robotFacts } from "./robot_facts.js";
-/** @import { Alarm, CampusMap, ClosedCorridor, Robot, OccupiedCorridor } from "../../types/api_types.ts" */
+/** @import { Alarm, CampusMap, ClosedCorridor, OccupiedCorridor, ReportedPlace, Robot } from "../../types/api_types.ts" */
 /** @import { Box, Drawing, Point } from "./map_drawing.js" */
 /** @import { MapFacts } from "./map_facts.js" */
 /** @import { Place, Wording } from "./map_labels.js" */
@@ -42,6 +44,7 @@ export class CampusMapElement extends PageElement {
     map: { attribute: false },
     robots: { attribute: false },
     traffic: { attribute: false },
+    reported: { attribute: false },
     alarms: { attribute: false },
     closed: { attribute: false },
     arrival: { attribute: false },
@@ -58,6 +61,8 @@ export class CampusMapElement extends PageElement {
     this.robots = [];
     /** @type {readonly OccupiedCorridor[]} who holds which corridor; what others hold than these robots is not shown */
     this.traffic = [];
+    /** @type {readonly ReportedPlace[]} what robots report to be in, on maps with bays */
+    this.reported = [];
     /** @type {readonly Alarm[]} of which some say that a corridor is closed */
     this.alarms = [];
     /** @type {readonly ClosedCorridor[]} into which no robot is let */
@@ -84,16 +89,16 @@ export class CampusMapElement extends PageElement {
   render() {
     const { map } = this;
     if (!map) return nothing;
-    const facts = factsOf(map, this.robots, this.traffic, this.alarms, this.closed, serverNow(), this.arrival);
+    const facts = factsOf(map, this.robots, this.traffic, this.reported, this.alarms, this.closed, serverNow(), this.arrival);
     const whole = drawing(map);
     this.#camera.lookAt(whole.frame);
     return html`<figure class="campus">
       <div class="area" tabindex="0" role="group" aria-label=${t("map.area")} @keydown=${this.#gestures.key}>
         ${this.#svg(map, whole, facts)}
       </div>
-      ${mapTools(this.#camera, whole.posts.filter(({ name }) => facts.seen.has(name)), facts.robots.length)}
+      ${mapTools(this.#camera, robotPoints(whole, facts), facts.robots.length)}
       <div class="map-told">
-        ${mapLegend(facts)}
+        ${mapLegend(map, facts)}
         ${this.#list(map, facts)}
         ${placesInWords(map)}
       </div>
@@ -116,8 +121,9 @@ export class CampusMapElement extends PageElement {
       @pointercancel=${up} @wheel=${wheel}>
       ${silentPlaces(drawn, this.#hatch)} ${occupiedBands(drawn, facts.taken)} ${corridorLines(drawn)}
       ${wayLines(drawn, this.#way(map), "way")} ${facts.robots.map((robot) => wayLines(drawn, aheadOf(map, robot), "ahead"))}
-      ${occupiedSigns(drawn, facts.taken, facts.robots.length > 1)} ${closedSigns(drawn, facts.shut)}
+      ${occupiedSigns(drawn, facts.ahead, facts.robots.length > 1)} ${closedSigns(drawn, facts.shut)}
       ${drawn.posts.map((post) => postMark(post, this.#at(post.name, facts)))}
+      ${drivingMarks(drawn, facts.between, facts.robots.length > 1)}
       ${wordings.map((wording) => this.#label(drawn, wording, places.get(wording.name)))}
     </svg>`;
   }
@@ -127,22 +133,23 @@ export class CampusMapElement extends PageElement {
     if (!this.facts && !facts.robots.length) return nothing;
     const list = robotFacts(map, facts, this.from, this.to);
     if (!this.facts) return html`<details class="places"><summary>${t("map.facts")}</summary>${list}</details>`;
-    return html`<p class="hint">${t("map.legend.honest")} ${map.corridors.some(({ assumed }) => assumed) ? t("map.assumed") : nothing}</p>
+    return html`<p class="hint">${t(map.posts.some((post) => baysOf(post).length) ? "map.legend.honest.bays" : "map.legend.honest")} ${map.corridors.some(({ assumed }) => assumed) ? t("map.assumed") : nothing}</p>
       <h3>${t("map.facts")}</h3>
       ${list}`;
   }
 
   /** @param {string} post @param {MapFacts} facts */
-  #at(post, { seen, expected }) {
+  #at(post, { standing, expected }) {
     const isEnd = post === this.from || post === this.to;
-    return { isEnd, isGoal: post === this.to, seen: seen.get(post) ?? [], expected: expected.get(post) ?? [] };
+    return { isEnd, isGoal: post === this.to, seen: standing.get(post) ?? [], expected: expected.get(post) ?? [], inBays: standing };
   }
 
   /** Where the names stand: looked for again when what they say has another length, not with each second of an age.
    *  @param {Drawing} whole @param {Wording[]} wordings @param {{factor: number, seen: Box | null, beside: number}} room `seen`: if not
    *  the whole @param {MapFacts} facts */
-  #places(whole, wordings, room, { taken, robots }) {
-    const signs = robots.length > 1 ? taken : [];
+  #places(whole, wordings, room, { ahead, between, robots }) {
+    const driving = between.map((one) => ({ ...one, robot: one.robot.name }));
+    const signs = [...(robots.length > 1 ? ahead : []), ...driving];
     const steady = wordings.map((wording) => ({ ...wording, notes: wording.notes.map((note) => note.replace(/\d/g, "0")) }));
     const key = JSON.stringify([this.map?.version, this.map?.name, room, steady, signs]);
     if (key !== this.#placed.key) {
@@ -183,6 +190,9 @@ export class CampusMapElement extends PageElement {
     return { x: view.x + (x - left - width / 2) / scale, y: view.y + (y - top - height / 2) / scale };
   }
 }
+
+/** Where robots are drawn. @param {Drawing} whole @param {MapFacts} facts @returns {Point[]} */
+const robotPoints = (whole, { seen, between }) => [...whole.posts.filter(({ name }) => seen.has(name)), ...inCorridors(whole, between)];
 
 /** @param {Box} frame @param {number} beside @returns {Box} */
 const widened = ({ x, y, width, height }, beside) => ({ x: x - beside, y, width: width + 2 * beside, height });

@@ -8,6 +8,7 @@
  * @typedef {MapCorridor & {points: Point[]}} DrawnCorridor
  * @typedef {{posts: readonly DrawnPost[], corridors: readonly DrawnCorridor[], frame: Box}} Drawing
  */
+import { bayBoxes } from "./map_bays.js";
 import { placeLabels } from "./map_labels.js";
 
 /** Units of drawing per post and direction: a map of many posts needs more room for their names. */
@@ -36,7 +37,7 @@ export const drawing = onceFor((/** @type {CampusMap} */ map) => {
   const names = placed.posts.map(({ name, title }) => ({ name, title, notes: [], important: true, robots: 0 }));
   const { boxes } = placeLabels(placed, names, null);
   const points = [...placed.posts, ...placed.corridors.flatMap(({ points }) => points)];
-  const frame = around([...boxes, ...points.map(({ x, y }) => ({ x, y, width: 0, height: 0 }))]);
+  const frame = around([...boxes, ...placed.posts.flatMap(bayBoxes), ...points.map(({ x, y }) => ({ x, y, width: 0, height: 0 }))]);
   return { ...placed, frame };
 });
 

@@ -3,6 +3,7 @@
  * @import { Box, DrawnPost, Point } from "./map_drawing.js"
  * @import { Places, Wording } from "./map_labels.js"
  */
+import { bayBoxes } from "./map_bays.js";
 import { crowdRadius } from "./map_sides.js";
 
 /** Between two labels side by side. */
@@ -25,6 +26,7 @@ export class Obstacles {
     this.lines = corridors.flatMap(({ points }) => points.slice(1).map((end, i) => ({ start: points[i], end })));
     const robots = new Map(wordings.map((wording) => [wording.name, wording.robots]));
     this.around = posts.map((post) => ({ name: post.name, ...around(post, robots.get(post.name) ?? 0) }));
+    this.bays = posts.flatMap(bayBoxes);
   }
 
   /** The cost of a label of this post here; counting stops beyond `most`. @param {Box} box @param {DrawnPost} post
@@ -33,6 +35,7 @@ export class Obstacles {
     let cost = room && !within(box, room) ? COSTS.outside : 0;
     for (const words of this.kept) if (overlap(box, words)) cost += COSTS.words;
     for (const label of labels) if (overlap(box, label.box)) cost += COSTS.words;
+    for (const bay of this.bays) if (overlap(box, bay)) cost += COSTS.post;
     for (const other of this.around) if (other.name !== post.name && overlap(box, other)) cost += COSTS.post;
     return cost < most ? cost + this.#lines(box) + this.#mistaken(box, post) : cost;
   }

@@ -1,11 +1,14 @@
 /** The pieces of a drawn map. What each robot is, is told by its shape and beside it in words, not by colour alone. */
 import { nothing, svg } from "lit";
+import { bayMarks, drawnBays } from "./map_bays.js";
 import { middleOf, pathOf, pointsFrom } from "./map_drawing.js";
 import { conditionsOf } from "./map_facts.js";
+import { inCorridors } from "./map_places.js";
 import { crowdRadius, inLines, LINE_HEIGHT, notesIn, robotPlaces } from "./map_sides.js";
 /** @import { Robot, OccupiedCorridor } from "../../types/api_types.ts" */
 /** @import { DrawnPost, Drawing } from "./map_drawing.js" */
 /** @import { Place, Wording } from "./map_labels.js" */
+/** @import { Between } from "./map_places.js" */
 
 export const NO_WAY = svg`<circle r="8" /><path d="M-4.500 0h9" />`;
 
@@ -61,16 +64,32 @@ export const wayLines = (drawn, posts, kind) =>
     return points.length ? svg`<path class=${kind} d=${pathOf(points)} />` : nothing;
   });
 
-/** @param {DrawnPost} post @param {{isEnd: boolean, isGoal: boolean, seen: readonly Robot[], expected: readonly Robot[]}} here */
-export const postMark = ({ name, x, y, dock }, { isEnd, isGoal, seen, expected }) => svg`
-  <g transform="translate(${x} ${y})">
-    ${dock ? svg`<rect class="dock" x="-9" y="-9" width="18" height="18" rx="5" />` : nothing}
+/** @param {DrawnPost} post @param {{isEnd: boolean, isGoal: boolean, seen: readonly Robot[], expected: readonly Robot[], inBays: Map<string, Robot[]>}} here
+ *  `seen` on the post itself */
+export const postMark = (post, { isEnd, isGoal, seen, expected, inBays }) => {
+  const { name, x, y, dock } = post;
+  const bays = drawnBays(post);
+  return svg`<g transform="translate(${x} ${y})">
+    ${bayMarks(bays)}
+    ${dock && !bays.length ? svg`<rect class="dock" x="-9" y="-9" width="18" height="18" rx="5" />` : nothing}
     <circle class=${isEnd ? "post end" : "post"} r=${isEnd ? 7 : 5.5} />
     ${isGoal ? svg`<circle class="goal" r="3" />` : nothing}
     ${seen.length ? svg`<circle class="aura" r=${crowdRadius(seen.length)} />` : nothing}
     ${expected.length ? svg`<circle class="expected" data-post=${name} data-robots=${namesOf(expected)} r=${seen.length ? crowdRadius(seen.length) + 3 : 12} />` : nothing}
-    ${robotPlaces(seen.length).map((place, i) => robotMark(seen[i], place, name))}
+    ${robotPlaces(seen.length).map((place, i) => robotMark(seen[i], place, { post: name }))}
+    ${bays.map((bay) => (inBays.get(bay.name) ?? []).map((robot, i) => robotMark(robot, { x: bay.x + 6 * i, y: bay.y + 6 * i }, { post: name, bay: bay.name })))}
   </g>`;
+};
+
+/** A robot in the corridor that it reports to be in, the way it goes, and its name. @param {Drawing} drawn
+ *  @param {readonly Between[]} between @param {boolean} named */
+export const drivingMarks = (drawn, between, named) =>
+  inCorridors(drawn, between).map(({ robot, corridor, x, y, degrees }) => svg`
+    <g class="driving" transform="translate(${x} ${y})">
+      <path class="heads" transform="rotate(${degrees})" d="M13 -5.500 22 0l-9 5.500z" />
+      ${robotMark(robot, { x: 0, y: 0 }, { corridor })}
+      ${named ? svg`<text y="-15" text-anchor="middle">${robot.name}</text>` : nothing}
+    </g>`);
 
 /** @param {readonly Robot[]} robots */
 const namesOf = (robots) => robots.map(({ name }) => name).join(" ");
@@ -82,10 +101,12 @@ const BODY = {
 };
 const BOLT = svg`<g class="bolt" transform="translate(8.500 -8.500)"><circle r="6" /><path d="M1 -4-2.500 .8H0L-1 4 2.500 -.8H0z" /></g>`;
 
-/** An octagon stands still, a broken outline is silent, a bolt charges. @param {Robot} robot @param {{x: number, y: number}} place @param {string} post */
-function robotMark(robot, { x, y }, post) {
+/** An octagon stands still, a broken outline is silent, a bolt charges. @param {Robot} robot @param {{x: number, y: number}} place
+ *  @param {{post?: string, bay?: string, corridor?: string}} at */
+function robotMark(robot, { x, y }, { post, bay, corridor }) {
   const conditions = conditionsOf(robot);
-  return svg`<g class=${["robot", ...conditions].join(" ")} data-robot=${robot.name} data-post=${post} transform="translate(${x} ${y})">
+  return svg`<g class=${["robot", ...conditions].join(" ")} data-robot=${robot.name} data-post=${post ?? nothing} data-bay=${bay ?? nothing}
+    data-corridor=${corridor ?? nothing} transform="translate(${x} ${y})">
     <title>${robot.name}</title>
     ${conditions.includes("stopped") ? BODY.stopped : BODY.moving}${FACE}${conditions.includes("charging") ? BOLT : nothing}
   </g>`;

@@ -1,9 +1,11 @@
 /**
  * The size of a label, and its possible places beside its post.
- * @import { Box, Point } from "./map_drawing.js"
+ * @import { Box, DrawnPost, Point } from "./map_drawing.js"
  * @import { Place, Wording } from "./map_labels.js"
  * @typedef {{box: Box, place: Place, dislike: number}} Side `dislike`: below 10, how much rather it stands elsewhere
  */
+
+import { baysOf } from "./map_bays.js";
 
 export const LINE_HEIGHT = 15;
 /** As map.css has them. */
@@ -15,6 +17,7 @@ const BESIDE_ROBOTS = 7;
 const ROBOT_ROOM = 25;
 /** Where there is no room beside the post, so much farther away. */
 const FARTHER = [0, 6, 12, 18];
+const BEYOND_BAYS = [...FARTHER, 24, 30];
 /** Along its side: -1 is as far as its corner reaches one way, 1 the other way. */
 const ALONG = Array.from({ length: 13 }, (_, i) => i / 6 - 1);
 const DISLIKES = { left: 0.1, below: 0.2, above: 0.3, along: 0.4, farther: 0.1, folded: 2 };
@@ -70,20 +73,21 @@ function measured(kind, text) {
   return pen.measureText(text).width;
 }
 
-/** The places that a label may have, the best first. @param {Point} post @param {Wording} wording @param {Box | null} frame
+/** The places that a label may have, the best first. @param {DrawnPost} post @param {Wording} wording @param {Box | null} frame
  *  @returns {Side[]} */
 export function sidesOf(post, wording, frame) {
   const foldings = notesIn(wording, true).length > wording.notes.length ? [false, true] : [false];
   return foldings.flatMap((folded) => sides(post, wording, folded, frame)).sort((a, b) => a.dislike - b.dislike);
 }
 
-/** @param {Point} post @param {Wording} wording @param {boolean} folded @param {Box | null} frame */
-function sides({ x, y }, wording, folded, frame) {
+/** @param {DrawnPost} post @param {Wording} wording @param {boolean} folded @param {Box | null} frame */
+function sides(post, wording, folded, frame) {
+  const { x, y } = post;
   const [titles, notes] = [inLines(wording.title), notesIn(wording, folded)];
   const width = Math.max(...titles.map((line) => widthOf("title", line)), ...notes.map((note) => widthOf("note", note)));
   const height = (titles.length + notes.length) * LINE_HEIGHT;
   const nearest = wording.robots > 1 ? crowdRadius(wording.robots) + BESIDE_ROBOTS : GAP;
-  return FARTHER.flatMap((farther) => {
+  return (baysOf(post).length ? BEYOND_BAYS : FARTHER).flatMap((farther) => {
     const gap = nearest + farther;
     const reach = height / 2 + gap - LINE_HEIGHT / 2;
     return ALONG.flatMap((along) => {

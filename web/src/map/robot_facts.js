@@ -2,13 +2,14 @@
 import { html, nothing } from "lit";
 import { expectedNext } from "../orders/arrival.js";
 import { conditionsOf, isSilentAsExpected } from "./map_facts.js";
+import { corridorOf, postOf } from "./map_places.js";
 import { batteryText, robotWhy } from "../orders/order_words.js";
 import { corridorTitle, titleOf } from "../service/posts.js";
 import { serverNow } from "../service/server_clock.js";
 import { t } from "../texts/texts.js";
 import { ago, clockTime, windowText } from "../texts/times.js";
 import { icon } from "../elements/icon.js";
-/** @import { Alarm, CampusMap, Robot } from "../../types/api_types.ts" */
+/** @import { Alarm, CampusMap, ReportedPlace, Robot } from "../../types/api_types.ts" */
 /** @import { MapFacts } from "./map_facts.js" */
 
 /** @param {CampusMap} map @param {MapFacts} facts @param {string} from @param {string} to */
@@ -30,11 +31,12 @@ const ofSeveral = (map, facts, robot) => html`<li>
 
 /** @param {CampusMap} map @param {MapFacts} facts @param {Robot} robot */
 const aboutRobot = (map, facts, robot) => [
-  fact("robot", seenText(map, robot)),
+  robot.last_seen || !reportsOf(facts, robot).length ? fact("robot", seenText(map, robot)) : nothing,
+  reportsOf(facts, robot).map((told) => fact("pin", reportedText(map, told))),
   aheadFact(map, robot, facts.arrival),
   conditionsOf(robot).includes("stopped") ? fact("warning", t("map.stopped")) : nothing,
   robot.why && (!facts.arrival || robot.activity === "driving") ? fact("send", robotWhy(robot, map)) : nothing,
-  facts.taken.filter((taken) => taken.robot === robot.name).map((taken) => fact("corridor", occupiedText(map, taken))),
+  facts.ahead.filter((taken) => taken.robot === robot.name).map((taken) => fact("corridor", occupiedText(map, taken))),
   facts.closed.filter((alarm) => alarm.robot === robot.name).map((alarm) => fact("warning", closedText(map, alarm))),
   conditionsOf(robot).includes("offline") ? fact("network", silentText(map, facts, robot)) : nothing,
   batteryFact(robot),
@@ -43,6 +45,18 @@ const aboutRobot = (map, facts, robot) => [
 /** @param {CampusMap} map @param {Robot} robot */
 const seenText = (map, { last_seen }) =>
   last_seen ? t("map.seen", { post: titleOf(map, last_seen.post), ago: ago(last_seen.at, serverNow()) }) : t("map.never_seen");
+
+/** @param {MapFacts} facts @param {Robot} robot */
+const reportsOf = ({ reported }, { name }) => reported.filter(({ robot }) => robot === name);
+
+/** @param {CampusMap} map @param {ReportedPlace} told */
+function reportedText(map, told) {
+  const time = clockTime(told.at);
+  if (corridorOf(map, told)) return t("map.in.corridor", { from: titleOf(map, told.place), to: titleOf(map, told.towards), time });
+  const at = postOf(map, told);
+  const values = { number: at?.number ?? 0, post: at?.post.title ?? told.place, time };
+  return t(at?.number ? "map.in.bay" : "map.in.crossing", values);
+}
 
 /** On the map of one order its arrival is the only time. @param {CampusMap} map @param {Robot} robot @param {MapFacts["arrival"]} arrival */
 function aheadFact(map, robot, arrival) {
