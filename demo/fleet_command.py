@@ -13,7 +13,12 @@ def fleet(
     once: Annotated[bool, typer.Option("--once", help="One order for every robot; end when they have ended.")] = False,
     minutes: Annotated[float | None, typer.Option(min=0.1, help="End after so many real minutes.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one summary object on stdout at the end.")] = False,
-    robots: Annotated[int | None, typer.Option(min=1, help="How many robots; default: one for every dock.")] = None,
+    robots: Annotated[
+        int | None,
+        typer.Option(
+            min=1, help="How many robots, at most one for every home of the map; default: one for every dock."
+        ),
+    ] = None,
     campus: Annotated[str, typer.Option("--map", help="A built-in map by name, or a map file.")] = "carleton",
     speed: Annotated[float | None, typer.Option(min=0.25, max=100, help="Simulated seconds per second.")] = None,
     scale: Annotated[float, typer.Option(min=0.05, max=1, help="How long the tunnels are, of their length.")] = 0.1,

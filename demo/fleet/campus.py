@@ -18,7 +18,8 @@ NAMES: Final = (
 
 @dataclass(frozen=True)
 class Campus:
-    """`homes`: every robot's own dock. `offices`: people, and the post next to each one's office."""
+    """`homes`: every robot's own bay, or dock where the map has no bays. `offices`: people, and the post next to each
+    one's office."""
 
     file: Path
     map: CampusMap
@@ -27,21 +28,22 @@ class Campus:
 
 
 def campus_of(name_or_path: str, robots: int | None = None) -> Campus:
-    """So many robots on this map; None: as many as it has docks. Raises StartError."""
+    """So many robots on this map, those with a dock first; None: as many as it has docks. Raises StartError."""
     try:
         campus = find_map(name_or_path)
     except CampusMapError as error:
         raise StartError(f"The map cannot be used. {error}") from error
-    docks = [post.name for post in campus.docks()]
+    places = campus.track.home_bays or campus.docks()
+    docks = sum(place.dock is not None for place in places)
     offices = _offices(campus)
     if not docks or len(offices) < 2:
         raise StartError(f"The map {campus.name} needs a dock, and two posts where a robot can stop.")
-    if robots is not None and robots > len(docks):
+    if robots is not None and robots > len(places):
         raise StartError(
-            f"The map {campus.name} has homes for {len(docks)} robots, a dock each ({', '.join(docks)}); {robots} were "
-            "asked for. Ask for fewer, or name a map with more docks: --map."
+            f"The map {campus.name} has homes for {len(places)} robots ({', '.join(place.name for place in places)}); "
+            f"{robots} were asked for. Ask for fewer, or name a map with more homes: --map."
         )
-    homes = {f"r{number}": dock for number, dock in enumerate(islice(docks, robots), start=1)}
+    homes = {f"r{number}": place.name for number, place in enumerate(islice(places, robots or docks), start=1)}
     return Campus(map_path(name_or_path), campus, homes, offices)
 
 

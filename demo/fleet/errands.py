@@ -29,10 +29,10 @@ def address(name: str) -> str:
 
 
 def first_errands(campus: Campus) -> Iterator[Errand]:
-    """A letter beside every robot's dock, so that all of them set out; to a person near, each to another if there are
+    """A letter beside every robot's home, so that all of them set out; to a person near, each to another if there are
     enough people."""
-    homes, told = set(campus.homes.values()), set[str]()
-    for home in campus.homes.values():
+    homes, told = [campus.map.address_of(home) for home in campus.homes.values()], set[str]()
+    for home in homes:
         sender, *others = sorted(campus.offices, key=lambda name: _distance_m(campus, home, name))
         recipient = next((name for name in others if name not in told and campus.offices[name] not in homes), others[0])
         told.add(recipient)

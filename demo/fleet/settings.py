@@ -76,10 +76,14 @@ class FleetDemo(Demonstration):
     def robot_command(self, robot: str) -> list[str]:
         more = {
             "--config": str(self._config_of(robot)),
-            "--start": f"dock:{self.homes[robot]}",
+            "--start": self._start_of(self.homes[robot]),
             "--world": str(self.world_file),
         }
         return self.command_of(robot, self.folder / robot, self.door / robot, more)
+
+    def _start_of(self, home: str) -> str:
+        """In the dock, or in the bay of a home that has none."""
+        return f"dock:{home}" if self.campus.map.track.post(home).dock else home
 
     @property
     def world_file(self) -> Path:

@@ -6,12 +6,14 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from app.core.errors import StartError
 from demo.__main__ import app as commands
-from demo.fleet.campus import NAMES, campus_of
+from demo.fleet.campus import NAMES, Campus, campus_of
 from demo.fleet.errands import errands, first_errands
 from demo.fleet.settings import FleetDemo
-from maps import builtin_map, read_map
+from maps import read_map
 from maps.campus_map import builtin_path
+from tests.plain_maps import PLAIN_TUNNELS
 
 SIX_DOCKS = ("uc", "canal", "mackenzie", "commons", "richcraft", "robertson")
 
@@ -30,16 +32,38 @@ def wide_map(tmp_path: Path) -> Path:
     return file
 
 
+HOMES = ("uc", "canal", "mackenzie", "commons", "loeb", "library", "richcraft", "robertson")
+"""Of the shipped map, those with a dock first: each is the first bay of its post."""
+
+
+def posts_of_homes(campus: Campus) -> list[str]:
+    return [campus.map.address_of(home) for home in campus.homes.values()]
+
+
 def test_without_a_number_there_is_a_robot_for_every_dock_of_the_map(wide_map: Path) -> None:
-    assert set(campus_of(str(wide_map)).homes.values()) == set(SIX_DOCKS)
-    assert list(campus_of("carleton").homes.values()) == [post.name for post in builtin_map("carleton").docks()]
+    assert set(posts_of_homes(campus_of(str(wide_map)))) == set(SIX_DOCKS)
+    assert list(campus_of("carleton").homes.values()) == [f"{post}_bay1" for post in HOMES[:4]]
     assert campus_of(str(wide_map), 5).homes.keys() == {"r1", "r2", "r3", "r4", "r5"}
+
+
+@pytest.mark.parametrize("robots", range(1, len(HOMES) + 1))
+def test_there_may_be_a_robot_for_every_home_and_the_first_ones_have_a_dock(robots: int) -> None:
+    assert list(campus_of("carleton", robots).homes.values()) == [f"{post}_bay1" for post in HOMES[:robots]]
+
+
+def test_on_a_map_without_bays_the_docks_are_the_homes() -> None:
+    assert list(campus_of(str(PLAIN_TUNNELS)).homes.values()) == list(HOMES[:4])
+    with pytest.raises(StartError, match=r"has homes for 4 robots \(uc, canal, mackenzie, commons\); 5 were"):
+        campus_of(str(PLAIN_TUNNELS), 5)
 
 
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        (("--robots", "5"), "The map carleton has homes for 4 robots, a dock each (uc, canal, mackenzie, commons); 5"),
+        (
+            ("--robots", "9"),
+            "The map carleton has homes for 8 robots (uc_bay1, canal_bay1, mackenzie_bay1, commons_bay1, ",
+        ),
         (("--map", "atlantis"), "The map cannot be used. atlantis"),
     ],
 )
@@ -50,10 +74,10 @@ def test_more_robots_than_homes_or_no_such_map_are_one_sentence(options: tuple[s
     assert said[1].startswith(f"campus-mail: {sentence}")
 
 
-def test_a_letter_begins_beside_every_dock_and_each_goes_to_another_person(wide_map: Path) -> None:
+def test_a_letter_begins_beside_every_home_and_each_goes_to_another_person(wide_map: Path) -> None:
     campus = campus_of(str(wide_map))
     first = list(first_errands(campus))
-    assert [campus.offices[errand.sender] for errand in first] == list(campus.homes.values())
+    assert [campus.offices[errand.sender] for errand in first] == posts_of_homes(campus)
     assert len({errand.recipient for errand in first}) == len(first)
     assert not {campus.offices[errand.recipient] for errand in first} & set(SIX_DOCKS)
 
@@ -67,13 +91,14 @@ def test_there_is_a_person_at_every_post_and_a_seed_says_who_sends() -> None:
     assert all(errand.sender != errand.recipient for errand in stream[0])
 
 
-def test_every_robot_is_started_at_home(wide_map: Path, tmp_path: Path) -> None:
-    demo = FleetDemo(
-        tmp_path, tmp_path / "door", port=0, speed=8.0, once=True, as_json=True, campus=campus_of(str(wide_map))
-    )
+def test_every_robot_is_started_at_home(tmp_path: Path) -> None:
+    wanted = campus_of("carleton", len(HOMES))
+    demo = FleetDemo(tmp_path, tmp_path / "door", port=0, speed=8.0, once=True, as_json=True, campus=wanted)
     demo.lay_out()
+    starts = []
     for robot, home in demo.homes.items():
         command = demo.robot_command(robot)
-        assert command[command.index("--start") + 1] == f"dock:{home}"
+        starts.append(command[command.index("--start") + 1])
         config = Path(command[command.index("--config") + 1])
         assert f'home = "{home}"' in config.read_text()
+    assert starts == [*(f"dock:{post}_bay1" for post in HOMES[:4]), *(f"{post}_bay1" for post in HOMES[4:])]
