@@ -3,6 +3,7 @@
 import asyncio
 from collections import Counter
 from collections.abc import Callable
+from contextlib import suppress
 
 from demo.children import Child, Children
 from demo.fleet.settings import FleetDemo
@@ -15,6 +16,8 @@ class RobotProcesses:
     def __init__(self, demo: FleetDemo, clock: Clock, children: Children, say: Callable[[str], None]) -> None:
         self._demo, self._clock, self._start_child, self._say = demo, clock, children.start, say
         self._running: dict[str, Child] = {}
+        self._wanted = {robot: asyncio.Event() for robot in demo.homes}
+        """Set when a person wants it back sooner."""
         self.died: Counter[str] = Counter()
         self.down: set[str] = set()
 
@@ -29,6 +32,16 @@ class RobotProcesses:
     @property
     def ids(self) -> dict[str, int]:
         return {robot: child.process.pid for robot, child in self._running.items()}
+
+    def kill(self, robot: str) -> None:
+        """End its process as a crash would; nothing if it does not run."""
+        with suppress(ProcessLookupError):
+            self._running[robot].process.kill()
+
+    def start_again(self, robot: str) -> None:
+        """Do not wait any longer; nothing if it runs."""
+        if robot in self.down:
+            self._wanted[robot].set()
 
     async def must_live(self) -> None:
         """Until one ends, which none may before there is something to see. Raises DemoFailed."""
@@ -46,10 +59,19 @@ class RobotProcesses:
             self.down.add(robot)
             again_s = self._demo.restart_after_s
             self._say(f"{robot}: its process {how}; it is started again in {again_s / 60:g} min, where it stands")
-            await sleep(self._clock, again_s)
+            await self._rest(robot, again_s)
             self._running[robot] = await self._start(robot)
             self.down.remove(robot)
             self._say(f"{robot}: started again, process {self._running[robot].process.pid}")
+
+    async def _rest(self, robot: str, again_s: float) -> None:
+        waits = [asyncio.ensure_future(one) for one in (sleep(self._clock, again_s), self._wanted[robot].wait())]
+        try:
+            await asyncio.wait(waits, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            for wait in waits:
+                wait.cancel()
+        self._wanted[robot].clear()
 
 
 def _how_it_ended(code: int, child: Child) -> str:
