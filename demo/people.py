@@ -88,6 +88,15 @@ class SimulatedPerson:
         robots: list[dict[str, Any]] = (await self._ask("GET", "/robots"))["items"]
         return robots
 
+    async def traffic(self) -> dict[str, Any]:
+        """For dispatchers: the corridors that robots hold, and what they report to be in."""
+        traffic: dict[str, Any] = await self._ask("GET", "/map/traffic")
+        return traffic
+
+    async def map(self) -> dict[str, Any]:
+        campus: dict[str, Any] = await self._ask("GET", "/map")
+        return campus
+
     async def notices(self, order_id: str) -> Counter[str]:
         """Count the notifications of each kind that this person got about an order."""
         items = (await self._ask("GET", "/notices?limit=100"))["items"]

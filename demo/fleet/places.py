@@ -49,6 +49,11 @@ class TruePlaces:
         self._inside: set[tuple[str, str, str]] = set()
 
     @property
+    def poses(self) -> Mapping[str, TruePose]:
+        """Return where every body was at the last look."""
+        return self._poses
+
+    @property
     def inside(self) -> int:
         """Return the number of robots that are in a corridor now."""
         return sum(here.corridor is not None for here in self.seen.values())

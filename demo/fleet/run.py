@@ -16,6 +16,7 @@ from demo.fleet.places import TruePlaces
 from demo.fleet.robots import RobotProcesses
 from demo.fleet.screen import FleetScreen
 from demo.fleet.settings import FleetDemo
+from demo.fleet.window import FleetWindow
 from demo.people import Spool
 from demo.settings import DemoFailed
 from maps import find_map
@@ -66,7 +67,8 @@ async def _perform(demo: FleetDemo, clock: SharedClock, children: Children, scre
         robots = RobotProcesses(demo, clock, children, screen.say)
         await robots.start()
         screen.name_processes(robots.ids)
-        places = TruePlaces(find_map(demo.map), demo.world_file, demo.folder / "true_poses.csv", demo.ghosts)
+        campus = find_map(demo.map)
+        places = TruePlaces(campus, demo.world_file, demo.folder / "true_poses.csv", demo.ghosts)
         life = CampusLife(demo, clock, screen.say)
         course = Course(demo, clock, life, places, robots)
         with closing(places):
@@ -74,7 +76,9 @@ async def _perform(demo: FleetDemo, clock: SharedClock, children: Children, scre
                 try:
                     async with beside([robots.must_live()]):
                         await life.begin()
-                    async with beside([robots.look_after()]):
+                    window = FleetWindow(demo, campus, clock, places, robots)
+                    async with beside([robots.look_after(), window.serve()]):
+                        screen.show_window(window.url)
                         await course.live(screen)
                 except DemoFailed:
                     # If the service has died that is the better reason: its watcher cancels us here.

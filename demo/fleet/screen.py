@@ -49,6 +49,15 @@ class FleetScreen(Terminal):
         named = ", ".join(f"{robot} {number}" for robot, number in ids.items())
         self.step(f"Their processes: {named}. Kill one (kill -9 NUMBER), and see what the service does.")
 
+    def show_window(self, url: str) -> None:
+        """A link to what only the demonstration has."""
+        self._console.print(f"  {'fleet':<10}  [cyan]{url}[/]", soft_wrap=True)
+        self._console.print(
+            "The last one shows reported and true positions side by side, and kills processes. It is no part of the "
+            "product.",
+            soft_wrap=True,
+        )
+
     def begin(self) -> None:
         if self._console.is_terminal:
             self._live.start()

@@ -124,8 +124,14 @@ export class CampusMapElement extends PageElement {
       ${occupiedSigns(drawn, facts.ahead, facts.robots.length > 1)} ${closedSigns(drawn, facts.shut)}
       ${drawn.posts.map((post) => postMark(post, this.#at(post.name, facts)))}
       ${drivingMarks(drawn, facts.between, facts.robots.length > 1)}
+      ${this.above(drawn)}
       ${wordings.map((wording) => this.#label(drawn, wording, places.get(wording.name)))}
     </svg>`;
+  }
+
+  /** More to be drawn above the robots, by elements that extend this one. @param {Drawing} _drawn @returns {unknown} */
+  above(_drawn) {
+    return nothing;
   }
 
   /** Folded up where the robots are told of elsewhere on the page. @param {CampusMap} map @param {MapFacts} facts */

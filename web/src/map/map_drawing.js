@@ -97,13 +97,15 @@ export function pointsFrom(drawn, from, to) {
 }
 
 /** The middle of a way, and the direction there in degrees. @param {Point[]} points */
-export function middleOf(points) {
+export const middleOf = (points) => along(points, 0.5);
+
+/** A part of a way from its start, and the direction there in degrees. @param {Point[]} points @param {number} part 0 to 1 */
+export function along(points, part) {
   const lengths = points.slice(1).map((end, i) => Math.hypot(end.x - points[i].x, end.y - points[i].y));
-  let left = lengths.reduce((sum, length) => sum + length, 0) / 2;
+  let left = lengths.reduce((sum, length) => sum + length, 0) * Math.min(part, 0.9999);
   const i = lengths.findIndex((length) => (left -= length) <= 0);
   const [a, b] = [points[i], points[i + 1]];
-  const part = 1 + left / (lengths[i] || 1);
-  return { ...between(a, b, part), degrees: (Math.atan2(b.y - a.y, b.x - a.x) * 180) / Math.PI };
+  return { ...between(a, b, 1 + left / (lengths[i] || 1)), degrees: (Math.atan2(b.y - a.y, b.x - a.x) * 180) / Math.PI };
 }
 
 /** @param {Point} a @param {Point} b @param {number} part 0 at a, 1 at b @returns {Point} */

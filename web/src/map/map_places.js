@@ -7,7 +7,7 @@
  * @typedef {{robot: Robot, corridor: string, from_post: string, to_post: string}} Between
  */
 import { baysOf, placeNamed } from "./map_bays.js";
-import { between, middleOf, pointsFrom } from "./map_drawing.js";
+import { along, pointsFrom } from "./map_drawing.js";
 
 /** The corridor that it is in. @param {CampusMap} map @param {ReportedPlace} reported */
 export const corridorOf = (map, { place, towards }) =>
@@ -41,9 +41,8 @@ export function placesOf(map, robots, reported) {
  *  @returns {(Between & Point & {degrees: number})[]} */
 export const inCorridors = (drawn, all) =>
   all.map((one) => {
-    const points = pointsFrom(drawn, one.from_post, one.to_post);
-    const beside = all.filter(({ corridor }) => corridor === one.corridor);
-    if (beside.length === 1) return { ...one, ...middleOf(points) };
-    const place = between(points[0], points[points.length - 1], (beside.indexOf(one) + 1) / (beside.length + 1));
-    return { ...one, ...place, degrees: middleOf(points).degrees };
+    const alike = all.filter(({ corridor }) => corridor === one.corridor);
+    const part = (alike.indexOf(one) + 1) / (alike.length + 1);
+    const way = pointsFrom(drawn, one.from_post, one.to_post);
+    return { ...one, ...along(way, one.from_post < one.to_post ? part : 1 - part) };
   });

@@ -37,10 +37,13 @@ const clock = new ServerClock();
 /** The service's present moment, in milliseconds since 1970. */
 export const serverNow = () => clock.now();
 
+/** @param {string} now as the service says it */
+export const tellServerTime = (now) => clock.tell(Date.parse(now));
+
 /** @param {{now: string, simulated: boolean}} about */
 export function keepServerTime(about) {
-  clock.tell(Date.parse(about.now));
-  const askAgain = () => api.about().then((answer) => clock.tell(Date.parse(answer.now)), () => undefined);
+  tellServerTime(about.now);
+  const askAgain = () => api.about().then(({ now }) => tellServerTime(now), () => undefined);
   setInterval(askAgain, about.simulated ? ASK_AGAIN_MS.simulated : ASK_AGAIN_MS.real);
   if (about.simulated) setTimeout(askAgain, 2 * SHORTEST_BASE_MS);
   // A sleeping machine's stop-watch stands still.
