@@ -15,6 +15,7 @@ from app.core.settings import CampusDep, ClockDep, SettingsDep
 from app.core.texts import LANGUAGES
 from app.notifications.lag import outbox_lag
 from maps import Post
+from maps.bays import Bay
 from protocol.clock import Clock
 from protocol.software import version
 
@@ -43,13 +44,14 @@ class About(BaseModel):
 class BayView(BaseModel):
     """A bay on the floor: a spur of tape from its post to (x_m, y_m), where the axle of a robot stands.
 
-    `home`: it is kept for the robot whose home it is."""
+    `home`: it is kept for the robot whose home it is. `markers`: how many marker sheets hang there."""
 
     name: str
     x_m: float
     y_m: float
     home: bool
     dock: bool
+    markers: int
 
 
 class PostView(BaseModel):
@@ -132,10 +134,18 @@ def _post(post: Post) -> PostView:
         mailroom=post.mailroom,
         markers=len(post.markers),
         network=post.network,
-        bays=[
-            BayView(name=bay.name, x_m=bay.x_m, y_m=bay.y_m, home=bay.home, dock=bay.dock is not None)
-            for bay in post.spurs
-        ],
+        bays=[_bay(bay) for bay in post.spurs],
+    )
+
+
+def _bay(bay: Bay) -> BayView:
+    return BayView(
+        name=bay.name,
+        x_m=bay.x_m,
+        y_m=bay.y_m,
+        home=bay.home,
+        dock=bay.dock is not None,
+        markers=len(bay.markers),
     )
 
 

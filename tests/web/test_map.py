@@ -33,7 +33,9 @@ def facts(place: object, *names: str) -> dict[str, Any]:
 
 
 def bays(post: Post) -> list[dict[str, Any]]:
-    return [{**facts(bay, "name", "x_m", "y_m", "home"), "dock": bay.dock is not None} for bay in post.spurs]
+    return [
+        {**facts(bay, "name", "x_m", "y_m", "home"), "dock": bay.dock is not None, "markers": 1} for bay in post.spurs
+    ]
 
 
 def as_sent(campus: CampusMap) -> dict[str, Any]:

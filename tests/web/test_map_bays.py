@@ -8,11 +8,13 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import Locator, Page, expect
 
+from maps import builtin_map
 from protocol.clock import RealClock
 from protocol.parts import Position
 from protocol.to_server import Occupancy, Where
 from tests.app.robots.playing import PlayedRobot
 from tests.app.traffic.bay_travelling import UNDERSTANDS
+from tests.web.drawn import expect_drawn
 from tests.web.mailroom_scene import Scene
 from tests.web.service import Service
 from tests.web.test_map import overlap
@@ -132,6 +134,23 @@ async def test_a_report_of_a_place_that_this_map_does_not_have_is_not_drawn_ther
     await comes_to_map(page)
     await expect(drawn(page, "r3", post="loeb")).to_be_visible()
     await expect(drawn(page, "r3")).not_to_have_attribute("data-bay", re.compile("."))
+
+
+async def test_the_marker_sheets_of_a_post_are_printed_with_those_of_its_bays(visit, tunnels):
+    page = await mailroom(visit, tunnels)
+    await page.goto("/print.html")
+    sheets = page.locator("img.marker-sheet")
+    track = builtin_map("carleton").track
+    await expect(sheets).to_have_count(sum(len(place.markers) for place in track.posts.values()))
+    for box in await page.get_by_role("group", name="Posts with their bays").get_by_role("checkbox").all():
+        if await box.get_attribute("value") != "uc":
+            await box.uncheck()
+    await expect(page.get_by_role("checkbox", name="UC (Nideyinàn) 8 sheets")).to_be_checked()
+    await expect(page.get_by_role("img", name="Marker sheet for UC (Nideyinàn), bay 1")).to_have_count(2)
+    await expect(page.get_by_role("img", name="Marker sheet for UC (Nideyinàn), bay 2")).to_have_count(1)
+    await expect(sheets).to_have_count(8)
+    for sheet in await sheets.all():
+        await expect_drawn(sheet)
 
 
 AT = "2026-01-05T09:00:00Z"

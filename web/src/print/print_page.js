@@ -3,6 +3,7 @@ import { html } from "lit";
 import { repeat } from "lit-html/directives/repeat.js";
 import * as api from "../service/api.js";
 import { followPage, PAGES } from "../service/links.js";
+import { baysOf } from "../map/map_bays.js";
 import { OnLive } from "../live/live.js";
 import { loadMap } from "../service/posts.js";
 import { inWords } from "../service/problems.js";
@@ -12,7 +13,7 @@ import { problemLine } from "../elements/field.js";
 import { icon } from "../elements/icon.js";
 import { orderSlip } from "./order_slip.js";
 import { PageElement } from "../elements/page_element.js";
-/** @import { CampusMap, Order, ShownCode } from "../../types/api_types.ts" */
+/** @import { CampusMap, MapPost, Order, ShownCode } from "../../types/api_types.ts" */
 
 const TURNED_BACK = ["returning", "at_return"];
 
@@ -77,16 +78,16 @@ export class PrintPage extends PageElement {
 
   /** @param {CampusMap} map */
   #markers(map) {
-    const sheets = map.posts.filter(({ name }) => this.chosen.has(name)).flatMap((post) => Array(post.markers).fill(post));
+    const sheets = map.posts.filter(({ name }) => this.chosen.has(name)).flatMap(sheetsOf);
     return html`<div class="before-print">
         <h1>${t("print.markers")}</h1>
         <p class="lead">${t("print.markers.hint")}</p>
         <fieldset class="options posts">
-          <legend>${t("print.posts")}</legend>
+          <legend>${t(map.posts.some((post) => baysOf(post).length) ? "print.posts.bays" : "print.posts")}</legend>
           ${map.posts.map(
-            ({ name, title, markers }) => html`<label>
-              <input type="checkbox" name="post" value=${name} .checked=${this.chosen.has(name)} @change=${() => this.#choose(name)} />
-              <span>${title}<small>${counted("print.sheets", markers)}</small></span>
+            (post) => html`<label>
+              <input type="checkbox" name="post" value=${post.name} .checked=${this.chosen.has(post.name)} @change=${() => this.#choose(post.name)} />
+              <span>${post.title}<small>${counted("print.sheets", sheetsOf(post).length)}</small></span>
             </label>`,
           )}
         </fieldset>
@@ -142,6 +143,13 @@ export class PrintPage extends PageElement {
     }
   }
 }
+
+/** The sheets of a post, and those of its bays. @param {MapPost} post */
+const sheetsOf = (post) =>
+  [
+    post,
+    ...baysOf(post).map((bay, i) => ({ ...bay, title: t("print.bay", { post: post.title, number: i + 1 }) })),
+  ].flatMap((place) => Array(place.markers).fill(place));
 
 /** The mailroom may take back what comes back; whether it is its turn, the service says. @param {string} order_id */
 async function theirCode(order_id) {
