@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Any, Final
 
 import uvicorn
-from fastapi import FastAPI, HTTPException
+from fastapi import FastAPI, HTTPException, Request
+from fastapi.responses import PlainTextResponse
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 from starlette.staticfiles import StaticFiles
 
@@ -25,7 +26,7 @@ from demo.fleet.robots import RobotProcesses
 from demo.fleet.settings import FleetDemo
 from demo.fleet.truth import agreement, on_track, true_places
 from demo.people import SimulatedPerson
-from demo.settings import MAILROOM
+from demo.settings import MAILROOM, DemoFailed
 from maps import CampusMap
 from protocol.clock import Clock
 from robot.simulated import TruePose
@@ -50,17 +51,23 @@ class FleetWindow:
         return f"http://{HERE}:{self._listening.getsockname()[1]}/{self._name}/"
 
     async def serve(self) -> None:
-        """Until cancelled."""
-        config = uvicorn.Config(self._app(), log_config=None, access_log=False, timeout_graceful_shutdown=1)
+        """Until cancelled; requests that are being answered come to their end first."""
+        config = uvicorn.Config(
+            self._app(), log_config=None, access_log=False, lifespan="off", timeout_graceful_shutdown=1
+        )
+        server = _Server(config)
+        await self._mailroom.sign_in()
+        serving = asyncio.ensure_future(server.serve(sockets=[self._listening]))
         try:
-            await self._mailroom.sign_in()
-            await _Server(config).serve(sockets=[self._listening])
+            await asyncio.shield(serving)
         finally:
-            self._listening.close()
+            server.should_exit = True
+            await serving
             await self._mailroom.close()
 
     def _app(self) -> FastAPI:
         app = FastAPI(openapi_url=None)
+        app.add_exception_handler(DemoFailed, _is_ending)
         for method, path, answer in (
             ("GET", "map", self._mailroom.map),
             ("GET", "state", self._state),
@@ -110,6 +117,11 @@ class FleetWindow:
         if robot not in self._demo.homes:
             raise HTTPException(404, "There is no such robot in this demonstration.")
         return robot
+
+
+async def _is_ending(request: Request, failure: Exception) -> PlainTextResponse:
+    """Answer for a service that has ended, as the demonstration does then."""
+    return PlainTextResponse(str(failure), 503)
 
 
 class _Server(uvicorn.Server):

@@ -54,6 +54,10 @@ class Watched:
         if self.process.stdout:
             self.process.stdout.close()
 
+    def rest(self) -> str:
+        """What it has said since, once it has ended."""
+        return "".join(self._lines.get() for _ in range(self._lines.qsize()))
+
     def _read(self) -> None:
         for line in self.process.stdout or ():
             self._lines.put(line)

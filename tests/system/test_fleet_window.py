@@ -30,8 +30,9 @@ def demo(folder: Path) -> Iterator[Watched]:
     watched = Watched("--speed", "2", "--restart-after", "600", "--data", str(folder))
     yield watched
     watched.process.terminate()
-    watched.process.wait(20)
+    assert watched.process.wait(20) == 0
     watched.close()
+    assert "Traceback" not in watched.rest()
 
 
 @pytest.fixture(scope="module")

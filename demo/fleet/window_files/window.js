@@ -40,7 +40,11 @@ function placeOf(drawn, { a, b, part }) {
   return { x: 0, y: 0 };
 }
 
-const answer = async (path, options) => (await fetch(path, options)).json();
+async function answer(path, options) {
+  const got = await fetch(path, options);
+  if (!got.ok) throw new Error(`${path}: ${got.status}`);
+  return got.json();
+}
 const order = (robot, what) => answer(`robots/${robot}/${what}`, { method: "POST" }).then(look);
 const shown = { map: null, state: null, truth: true, gone: false };
 
