@@ -5,11 +5,12 @@ marker dirt stays below what their error correction can bear in most frames. Wha
 robot drives.
 """
 
+from collections.abc import Collection, Sequence
 from itertools import pairwise
 from random import Random
 from typing import Any, Final
 
-from maps import CampusMap, NoRoute, shortest_route
+from maps import CampusMap, Corridor, NoRoute, shortest_route
 from robot.scenarios.campus import campus_of
 from robot.scenarios.errors import ScenarioError
 from robot.scenarios.places import along
@@ -35,8 +36,10 @@ def drawn(world: str, seed: int) -> Scenario:
     """The scenario with this number. Raises ScenarioError for a world that is not in WORLDS."""
     if world not in WORLDS:
         raise ScenarioError("drawn", "world", f"there is no {world!r}", f"There are: {', '.join(WORLDS)}.")
-    random = Random(f"{world}/{seed}")
+    # What lies about bays has a stream of its own: the rest of a number stayed the same when maps got bays.
+    random, of_bays = Random(f"{world}/{seed}"), Random(f"{world}/{seed}/bays")
     campus = campus_of(WORLDS[world])
+    spurs = campus.track.corridors[len(campus.corridors) :]
     home = random.choice(campus.docks()).name
     orders = _orders(random, campus)
     way_m = _way_m(campus, home, orders)
@@ -48,10 +51,10 @@ def drawn(world: str, seed: int) -> Scenario:
             "map": WORLDS[world].model_dump(),
             "robot": [_robot(random, home)],
             "noise": _noise(random),
-            "dirt": {post: random.uniform(0.0, 0.06) for post in campus.posts if random.random() < 0.3},
+            "dirt": _dirt(random, campus.posts) | _dirt(of_bays, [spur.b for spur in spurs]),
             "dark": [
-                _circle(random, campus, 1.0) | {"darkness": random.uniform(0.2, 0.6)}
-                for _ in range(random.randrange(3))
+                *(_dark(random, campus.corridors) for _ in range(random.randrange(3))),
+                *(_dark(of_bays, spurs) for _ in range(of_bays.randrange(2)) if spurs),
             ],
             "no_network": _patches(random, campus),
             "stander": [_stander(random, campus) for _ in range(random.choice((0, 0, 1, 1, 2)))],
@@ -113,14 +116,22 @@ def _noise(random: Random) -> dict[str, float]:
     }
 
 
-def _circle(random: Random, campus: CampusMap, radius_m: float) -> dict[str, Any]:
+def _dirt(random: Random, places: Collection[str]) -> dict[str, float]:
+    return {place: random.uniform(0.0, 0.06) for place in places if random.random() < 0.3}
+
+
+def _dark(random: Random, lines: Sequence[Corridor]) -> dict[str, Any]:
+    return _circle(random, lines, 1.0) | {"darkness": random.uniform(0.2, 0.6)}
+
+
+def _circle(random: Random, lines: Sequence[Corridor], radius_m: float) -> dict[str, Any]:
     """Somewhere on the tape."""
-    at = along(random.choice(campus.corridors), random.random())
+    at = along(random.choice(lines), random.random())
     return {"at": (at.x_m, at.y_m), "radius_m": random.uniform(0.4, radius_m)}
 
 
 def _patches(random: Random, campus: CampusMap) -> list[dict[str, Any]]:
-    circles = [_circle(random, campus, 1.5) for _ in range(random.randrange(3))]
+    circles = [_circle(random, campus.corridors, 1.5) for _ in range(random.randrange(3))]
     return [one for one in circles if not _covers_dock(one, campus)]
 
 
