@@ -94,7 +94,9 @@ class BayTrafficSchedule(TrafficSchedule):
 
     def _aside(self, one: RobotLocation, bay: str, post: str, now_s: float, *, asked: bool) -> Verdict:
         answer = self.controller.comes_in(one.robot, post, now_s)
-        if isinstance(answer, LetIn) and one.home_bay is not None and bay != one.home_bay:
+        is_home_here = one.home_bay is not None and self.track.address_of(one.home_bay) == post
+        if isinstance(answer, LetIn) and answer.at_home and is_home_here and bay != one.home_bay:
+            assert one.home_bay is not None  # noqa: S101  # it is here
             return MayEnter(one.robot, ((bay, post), (post, one.home_bay)), aside=not asked)
         return self._waits(one, (post, one.home_bay or bay), answer, now_s)
 

@@ -112,7 +112,8 @@ def carleton() -> Campus:
     campus = builtin_map("carleton")
     network = network_of(campus, lambda corridor, _: corridor.length_m / SPEED_M_S)
     lengths = {number: corridor.length_m for number, corridor in enumerate(campus.corridors)}
-    docks = {post.name: network.number_of(post.name) for post in campus.docks()}
+    homes = [campus.address_of(home.name) for home in campus.track.home_bays if home.dock]
+    docks = {post: network.number_of(post) for post in homes}
     return Campus(campus, network, lengths, docks, Ways(campus))
 
 

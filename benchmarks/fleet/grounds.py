@@ -63,7 +63,7 @@ GROUNDS: Final[dict[str, Callable[[int, float | None, int], Ground]]] = {
 def _of_map(name: str, bays: int, following_s: float | None) -> Ground:
     campus = builtin_map(name)
     network = network_of(campus, lambda *_: TRAVEL_S, lambda _: following_s, CLEARANCE_S)
-    docks = tuple(network.number_of(post.name) for post in campus.docks())
+    docks = tuple(network.number_of(campus.address_of(home.name)) for home in campus.track.home_bays if home.dock)
     return Ground(name, replace(network, bays=(bays,) * len(network.posts)), docks)
 
 

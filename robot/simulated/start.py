@@ -35,7 +35,7 @@ def start_pose(campus: CampusMap, start: str) -> Pose:
 
 
 def _docked(track: CampusMap, start: str, post: str) -> Pose:
-    docks = [place for place in track.docks() if not post or post in (place.name, place.bay_of)]
+    docks = [place for place in track.docks() if (post in (place.name, place.bay_of) if post else not place.is_lent)]
     if not docks or not docks[0].dock:
         track.post(post or next(iter(track.posts)))
         raise UnknownStart(start, f"{post or track.name} has no dock")

@@ -28,7 +28,7 @@ def wide_map(tmp_path: Path) -> Path:
         text = before + name + after.replace("home = true", "home = true\ndock = true", 1)
     file = tmp_path / "wide.toml"
     file.write_text(text, encoding="utf-8")
-    assert {post.name for post in read_map(file).docks()} == set(SIX_DOCKS)
+    assert {home.bay_of for home in read_map(file).track.home_bays if home.dock} == set(SIX_DOCKS)
     return file
 
 
