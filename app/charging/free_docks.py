@@ -14,8 +14,8 @@ def free_docks(campus: CampusMap, work: OpenWork, robot: str) -> list[str]:
     """For this robot, its own among them."""
     its, others = work.robots[robot], [one for one in work.robots.values() if one.name != robot]
     taken = {dock for one in others for dock in docks_of(one, work)}
-    known = {post.name for post in campus.docks()} & {its.home}
-    return [dock for dock in (*known, *shared_docks(campus, work)) if dock not in taken]
+    its_own = {post.name for post in campus.docks()} & {its.home}
+    return [dock for dock in (*its_own, *shared_docks(campus, work)) if dock not in taken]
 
 
 def shared_docks(campus: CampusMap, work: OpenWork) -> list[str]:

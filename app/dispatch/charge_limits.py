@@ -129,8 +129,8 @@ class Charges:
         return Use(way_m, way_m / settings.assumed_speed_m_s + handovers * settings.assumed_handover_s)
 
     def _to_dock_m(self, post: str, robot: Charged) -> float:
-        docks = self._shared | {robot.home} if robot.home in self._docks else self._shared
-        return min((self._length_m(post, dock) for dock in docks if dock), default=0.0)
+        its_own = self._docks & {robot.home}
+        return min((self._length_m(post, dock) for dock in self._shared | its_own), default=0.0)
 
     def _length_m(self, from_post: str | None, to_post: str) -> float:
         length_m = self.ways.length_m(from_post, to_post)

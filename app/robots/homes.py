@@ -57,9 +57,11 @@ async def note_home(session: AsyncSession, campus: CampusMap, robot: RobotRow, h
     if campus.track.home_bays and GIVEN in hello.understands:
         given = await free_home(session, campus, robot.name, _wanted(robot, hello))
     home = given or hello.home
-    bay = campus.track.posts.get(home or "")
-    robot.home_bay = bay.name if bay and bay.bay_of else None
-    robot.home = None if robot.home_bay and not (bay and bay.dock) else home and campus.address_of(home)
+    place = campus.track.posts.get(home or "")
+    if place is not None and place.bay_of:
+        robot.home_bay, robot.home = place.name, place.bay_of if place.dock else None
+    else:
+        robot.home_bay, robot.home = None, home
     return given
 
 

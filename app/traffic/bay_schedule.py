@@ -94,11 +94,10 @@ class BayTrafficSchedule(TrafficSchedule):
 
     def _aside(self, one: RobotLocation, bay: str, post: str, now_s: float, *, asked: bool) -> Verdict:
         answer = self.controller.comes_in(one.robot, post, now_s)
-        is_home_here = one.home_bay is not None and self.track.address_of(one.home_bay) == post
-        if isinstance(answer, LetIn) and answer.at_home and is_home_here and bay != one.home_bay:
-            assert one.home_bay is not None  # noqa: S101  # it is here
-            return MayEnter(one.robot, ((bay, post), (post, one.home_bay)), aside=not asked)
-        return self._waits(one, (post, one.home_bay or bay), answer, now_s)
+        home = one.home_bay if one.home_bay and self.track.address_of(one.home_bay) == post else None
+        if home not in (None, bay) and isinstance(answer, LetIn) and answer.at_home:
+            return MayEnter(one.robot, ((bay, post), (post, home)), aside=not asked)
+        return self._waits(one, (post, home or bay), answer, now_s)
 
     def _over_the_post_ahead(self, one: RobotLocation, post: str, now_s: float) -> Verdict | None:
         """From the end of its corridor straight on, or into a bay."""

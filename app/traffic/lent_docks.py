@@ -24,8 +24,7 @@ def with_lent_docks(track: CampusMap, robots: Mapping[str, RobotLocation]) -> di
 
 def _how_near(track: CampusMap, dock: Post, one: RobotLocation) -> int | None:
     """It is in it or was let in (0), is sent there (1), is on its way there (2) or asks for one (3)."""
-    is_inside = one.occupies is not None and one.occupies.place == dock.name
-    if is_inside or any(hold.to_post == dock.name for hold in one.holds):
+    if _is_inside(dock, one) or any(hold.to_post == dock.name for hold in one.holds):
         return None if _moves_next_door(track, dock, one) else 0
     if one.goals and one.goals[0].charges_to is not None and one.goals[0].post == dock.bay_of:
         return 1
@@ -43,5 +42,8 @@ def _moves_next_door(track: CampusMap, dock: Post, one: RobotLocation) -> bool:
 
 
 def _at_home_in(dock: Post, one: RobotLocation) -> RobotLocation:
-    is_inside = one.occupies is not None and one.occupies.place == dock.name
-    return replace(one, home=dock.bay_of, home_bay=dock.name, at_home=is_inside)
+    return replace(one, home=dock.bay_of, home_bay=dock.name, at_home=_is_inside(dock, one))
+
+
+def _is_inside(dock: Post, one: RobotLocation) -> bool:
+    return one.occupies is not None and one.occupies.place == dock.name

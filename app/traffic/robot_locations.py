@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from sqlmodel import and_, col, func, select, tuple_
+from sqlmodel import and_, case, col, func, select, tuple_
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.models import ClaimRow, GrantRow, MissionRow, MissionState, OccupancyRow, RobotRow, StopRow
@@ -134,10 +134,11 @@ def _request(row: ClaimRow, campus: CampusMap) -> ReservationRequest:
         if leg[0] != here or leg in first:
             break
         first.append(leg)
-    goal = campus.address_of(row.goal or legs[-1][1])
+    place = row.goal or legs[-1][1]
+    goal = campus.address_of(place)
     to_goal = next((number for number, leg in enumerate(legs, start=1) if leg[1] == goal), len(legs))
     then = tuple(legs[1:to_goal]) if len(first) == 1 else ()
-    return ReservationRequest(row.claim_id, tuple(first), goal, then, tuple(legs), row.goal or legs[-1][1])
+    return ReservationRequest(row.claim_id, tuple(first), goal, then, tuple(legs), place)
 
 
 _LAST_LEFT: Final = (
@@ -154,15 +155,15 @@ _LAST_LEFT: Final = (
 
 async def _goals(session: AsyncSession) -> dict[str, list[Stop]]:
     over = (StopRow.done_at, StopRow.gave_up_at, StopRow.dropped_at)
+    charges_to = case((col(StopRow.action) == StopAction.DOCK, func.coalesce(StopRow.until_ratio, FULL)))
     left = (
-        select(MissionRow.robot, StopRow)
+        select(MissionRow.robot, StopRow.id, StopRow.post, charges_to)
         .where(col(StopRow.mission_id) == col(MissionRow.id), col(MissionRow.state) == MissionState.ACTIVE)
         .where(*(col(at).is_(None) for at in over))
         .order_by(col(MissionRow.created_at), col(StopRow.position))
     )
     goals: dict[str, list[Stop]] = {}
-    for robot, stop in (await session.exec(left)).all():
-        charges_to = (stop.until_ratio or FULL) if stop.action == StopAction.DOCK else None
-        if stop.post:
-            goals.setdefault(robot, []).append(Stop(stop.id, stop.post, charges_to))
+    for robot, stop, post, ratio in (await session.exec(left)).all():
+        if post:
+            goals.setdefault(robot, []).append(Stop(stop, post, ratio))
     return goals

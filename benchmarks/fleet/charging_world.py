@@ -11,6 +11,7 @@ from math import inf
 from random import Random
 from typing import Final
 
+from benchmarks.fleet.grounds import home_docks
 from benchmarks.fleet.packs import Pack, some_pack
 from fleet.charging.energy import Use
 from fleet.schedule.network import Lane, Network, network_of
@@ -112,8 +113,7 @@ def carleton() -> Campus:
     campus = builtin_map("carleton")
     network = network_of(campus, lambda corridor, _: corridor.length_m / SPEED_M_S)
     lengths = {number: corridor.length_m for number, corridor in enumerate(campus.corridors)}
-    homes = [campus.address_of(home.name) for home in campus.track.home_bays if home.dock]
-    docks = {post: network.number_of(post) for post in homes}
+    docks = {post: network.number_of(post) for post in home_docks(campus)}
     return Campus(campus, network, lengths, docks, Ways(campus))
 
 

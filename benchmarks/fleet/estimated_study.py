@@ -29,6 +29,7 @@ from benchmarks.fleet.estimated_world import (
     World,
     hour_of,
 )
+from benchmarks.fleet.grounds import home_docks
 from benchmarks.fleet.promises import Promises
 from fleet.eta.arrivals import Ahead, Estimates
 from fleet.eta.durations import Kind, Thing
@@ -164,7 +165,7 @@ def study(seed: int, days: float, robots: int = 4, bays: int = 2) -> Study:
     estimates = Estimates(Ways(campus), SPEED_M_S, HANDOVER_S, UTC, range(*OFFICE_H))
     its = Study(rng, network, Promises(network, estimates, BEGINS))
     pace = {(at, back): rng.uniform(*PACE) for at in range(len(network.corridors)) for back in (0, 1)}
-    homes = [network.number_of(campus.address_of(home.name)) for home in campus.track.home_bays if home.dock]
+    homes = [network.number_of(post) for post in home_docks(campus)]
     fleet = {f"r{number}": homes[number % len(homes)] for number in range(robots)}
     there = {name: Robot(home, Start(home, True, 0.0, 0.0)) for name, home in fleet.items()}
     its.world = World(network, there, Truth(rng, pace), its.promises.drove, its.handled, its.reached)

@@ -6,7 +6,7 @@ from random import Random
 from typing import Final
 
 from fleet.schedule.network import Lane, Network, network_of
-from maps import builtin_map
+from maps import CampusMap, builtin_map
 
 TRAVEL_S: Final = 300.0
 """Assumed for every corridor of every map: the tunnels have not been driven yet."""
@@ -63,8 +63,13 @@ GROUNDS: Final[dict[str, Callable[[int, float | None, int], Ground]]] = {
 def _of_map(name: str, bays: int, following_s: float | None) -> Ground:
     campus = builtin_map(name)
     network = network_of(campus, lambda *_: TRAVEL_S, lambda _: following_s, CLEARANCE_S)
-    docks = tuple(network.number_of(campus.address_of(home.name)) for home in campus.track.home_bays if home.dock)
+    docks = tuple(map(network.number_of, home_docks(campus)))
     return Ground(name, replace(network, bays=(bays,) * len(network.posts)), docks)
+
+
+def home_docks(campus: CampusMap) -> list[str]:
+    """The posts with a dock in which a robot has its home."""
+    return [campus.address_of(home.name) for home in campus.track.home_bays if home.dock]
 
 
 def _of_edges(name: str, posts: int, edges: Iterable[tuple[int, int]], bays: int, following_s: float | None) -> Ground:

@@ -11,7 +11,7 @@ from app.core.settings import Settings
 from app.traffic.bay_schedule import BayTrafficSchedule
 from app.traffic.bays import free_bay
 from app.traffic.reopening import corridor_on
-from app.traffic.schedule import Elsewhere, MayEnter, Verdict
+from app.traffic.schedule import Elsewhere, HasToWait, MayEnter, Verdict
 from app.traffic.snapshot import Hold, Occupied, ReservationRequest, RobotLocation, Stop, TrafficSnapshot
 from maps import find_map
 from tests.app.traffic.bay_travelling import MAP
@@ -171,3 +171,16 @@ def test_others_do_not_wait_for_a_robot_that_charges(settings: Settings) -> None
     way = "post4_bay2", "post4", "post3", "post5", "post5_bay1"
     leaves = asks(comes, "post5", *way)
     assert may_enter(settings, *[(charges, home)] * 3, (charges, leaves), every_s=100.0) == ["r2"]
+
+
+def test_who_asks_for_a_dock_that_another_stands_in_is_not_let_onto_the_crossing(settings: Settings) -> None:
+    """Its home is at another post: there is none that it could go aside to here."""
+    in_dock, in_bay = Occupied("bay", "post2_bay2"), Occupied("bay", "post2_bay1")
+    charges = replace(
+        GUEST, robot="r2", post="post2", home="post2", home_bay="post2_bay2", at_home=True, occupies=in_dock
+    )
+    waits = replace(GUEST, post="post2", occupies=in_bay, goals=(Stop("own", "post2"),))
+    answers = verdicts(
+        settings, (replace(charges, goals=()), asks(waits, "post2", "post2_bay1", "post2", "post2_bay2"))
+    )
+    assert [type(one) for one in answers] == [HasToWait]

@@ -1,6 +1,6 @@
 /** The pieces of a drawn map. What each robot is, is told by its shape and beside it in words, not by colour alone. */
 import { nothing, svg } from "lit";
-import { bayMarks, drawnBays } from "./map_bays.js";
+import { bayMark, bayMarks, drawnBays } from "./map_bays.js";
 import { middleOf, pathOf, pointsFrom } from "./map_drawing.js";
 import { conditionsOf } from "./map_facts.js";
 import { inCorridors } from "./map_places.js";
@@ -71,7 +71,7 @@ export const postMark = (post, { isEnd, isGoal, seen, expected, inBays }) => {
   const bays = drawnBays(post);
   return svg`<g transform="translate(${x} ${y})">
     ${bayMarks(bays)}
-    ${dock && !bays.length ? svg`<rect class="dock" x="-9" y="-9" width="18" height="18" rx="5" />` : nothing}
+    ${dock && !bays.length ? bayMark(false, true) : nothing}
     <circle class=${isEnd ? "post end" : "post"} r=${isEnd ? 7 : 5.5} />
     ${isGoal ? svg`<circle class="goal" r="3" />` : nothing}
     ${seen.length ? svg`<circle class="aura" r=${crowdRadius(seen.length)} />` : nothing}
