@@ -138,7 +138,8 @@ def _request(row: ClaimRow, campus: CampusMap) -> ReservationRequest:
     goal = campus.address_of(place)
     to_goal = next((number for number, leg in enumerate(legs, start=1) if leg[1] == goal), len(legs))
     then = tuple(legs[1:to_goal]) if len(first) == 1 else ()
-    return ReservationRequest(row.claim_id, tuple(first), goal, then, tuple(legs), place)
+    comes_in = here == goal and campus.address_of(legs[0][1]) == goal
+    return ReservationRequest(row.claim_id, tuple(first), goal, then, tuple(legs), place, comes_in)
 
 
 _LAST_LEFT: Final = (

@@ -33,11 +33,13 @@ class ReservationRequest:
     """All of them, as the robot named them: spurs and corridors of the track."""
     place: str = ""
     """The goal as the robot named it: a post, or a bay there."""
+    comes_in: bool = False
+    """It asks to come into a bay at its goal."""
 
     @property
     def is_for_later(self) -> bool:
         """It asks on its way for what comes after the place where it is going to now."""
-        return self.goal == self.first[0][0]
+        return self.goal == self.first[0][0] and not self.comes_in
 
 
 @dataclass(frozen=True)
