@@ -251,7 +251,7 @@ class Mind:
             await self._wait_for_leave()
             return
         aside = self.route.detour
-        if aside is not None and aside.to_post != goal:
+        if aside is not None and aside.to_post != goal and not self.track.bays_of(aside.to_post):
             self._asides.append(aside.to_post)
             return
         self._goes_on()

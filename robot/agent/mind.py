@@ -16,7 +16,7 @@ from maps import CampusMapError
 from protocol.parts import Activity, Battery
 from protocol.to_server import Snapshot, Why
 from robot.agent.actions.actions import Actions
-from robot.agent.actions.corridors import WAY_BLOCKED, detour, tried_again
+from robot.agent.actions.corridors import WAY_BLOCKED, tried_again
 from robot.agent.actions.hands import PLACE_UNKNOWN, Hands
 from robot.agent.perception.battery import BatteryLevel, BatterySense
 from robot.agent.perception.percepts import perceive
@@ -152,7 +152,7 @@ class Mind:
             navigator.doubted,
             navigator.beside_dock,
             navigator.closed.names,
-            aside.to_post if (aside := detour(hands)) else None,
+            navigator.stops_aside,
             navigator.campus.post(at).bay_of if at else None,
             crossing,
         )

@@ -117,6 +117,21 @@ class Navigator(Tracker):
         turn_rad = self._turn_to(towards) if towards else None
         return None if towards is None else Way.FORWARD if turn_rad is None else sector(turn_rad)
 
+    @property
+    def detour(self) -> Leg | None:
+        """The corridor from here that it has to take first, unless it knows that to be closed."""
+        leg, post = self._duties.held.detour, self.at and self.campus.address_of(self.at)
+        if leg is None or leg.from_post not in (self.at, post, self.waits_before):
+            return None
+        return None if corridor_name(leg.from_post, leg.to_post) in self.closed.names else leg
+
+    @property
+    def stops_aside(self) -> str | None:
+        """The place to which that leads, if it has to stand there first. A post with bays it passes: in the corridor it
+        asks for what comes after, by its own plan."""
+        leg = self.detour
+        return leg.to_post if leg is not None and not self.campus.bays_of(leg.to_post) else None
+
     def _not_next(self) -> frozenset[str]:
         """Return the corridors to avoid here: all that does not lead straight to where the service sends it first."""
         return kept_from(self.campus, self._duties.held.detour, self.at, self.destination, self._avoided())
@@ -248,6 +263,9 @@ class Navigator(Tracker):
         return turn_rad if turn_rad is not None and abs(turn_rad) > STRAIGHT_RAD else 0.0
 
     def _next_post(self) -> str | None:
+        aside = self.detour
+        if aside is not None and aside.from_post == self.at and self.stops_aside is None:
+            return aside.to_post
         with suppress(NoRoute):
             if self.destination is not None and self.at is not None:
                 return next_post(self.campus, self.at, self.bay_for(self.destination), self._not_next())

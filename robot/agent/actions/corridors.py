@@ -55,13 +55,13 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
     if closed:
         missions.claims.avoid = frozenset()  # what was denied may be open by the next time it asks
         return AtOnce(Ended(closed))
-    asks = not (detour(hands) or (navigator.asks_ahead_later and missions.claims.may_enter(first)))
+    asks = not (navigator.detour or (navigator.asks_ahead_later and missions.claims.may_enter(first)))
     claim_id = missions.claims.ask((*first, *way), goal) if asks else None
     asked_s = hands.view.at_s
 
     def ask() -> Ended | None:
         _give_back(hands, first, way)  # it may have been granted what it asked for before it changed its mind
-        if missions.claims.may_enter(first) or detour(hands):
+        if missions.claims.may_enter(first) or navigator.detour:
             return DONE
         if leg := _way_out_of_silence(hands, asked_s):
             missions.claims.turn_aside(leg)
@@ -75,7 +75,7 @@ def _give_back(hands: Hands, first: Sequence[Leg], way: Sequence[Leg]) -> None:
     """Release corridors that it does not need while it stands in none of them. Without network it keeps all: no other
     robot would come to know, and it may be the only way out of there."""
     if hands.navigator.at and hands.missions.online:
-        kept = (*first, *_granted_ahead(hands, way), detour(hands))
+        kept = (*first, *_granted_ahead(hands, way), hands.navigator.detour)
         hands.missions.claims.clear(leg for leg in hands.missions.held.grants if leg not in kept)
 
 
@@ -93,15 +93,6 @@ def _granted_ahead(hands: Hands, way: Sequence[Leg]) -> Iterator[Leg]:
             return
         end = leg.to_post
         yield leg
-
-
-def detour(hands: Hands) -> Leg | None:
-    """The corridor from here that it has to take first, unless the robot knows that to be closed."""
-    leg, navigator = hands.missions.held.detour, hands.navigator
-    post = navigator.at and navigator.campus.address_of(navigator.at)
-    if leg is None or leg.from_post not in (navigator.at, post, navigator.waits_before):
-        return None
-    return None if _is_closed(hands, leg) else leg
 
 
 def _way_out_of_silence(hands: Hands, asked_s: float) -> Leg | None:

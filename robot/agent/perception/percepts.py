@@ -167,7 +167,8 @@ PERCEPTS: Final = (
     ),
     Percept(
         "detour",
-        "detour(Post): it goes to this neighbour first, to let others pass or to find the network; until it has gone",
+        "detour(Post): it goes to this place first, to let others pass or to find the network; until it has gone. A "
+        "post with bays is passed, and not perceived here",
         lambda s: [f"detour({s.where.detour})"] if s.where.detour else [],
     ),
     Percept("fault", "fault(Name): a fault of the reflex table", lambda s: (f"fault({f})" for f in s.view.faults)),

@@ -14,7 +14,7 @@ from protocol.envelope import Envelope, type_of
 from protocol.parts import Leg
 from protocol.to_robot import Deny, Detour, Grant
 from protocol.to_server import Claim
-from robot.agent.actions.corridors import AskAhead, detour
+from robot.agent.actions.corridors import AskAhead
 from robot.agent.navigator import Navigator
 from robot.mission.memory import Incoming
 from robot.mission.store import Store
@@ -160,7 +160,7 @@ def test_sent_elsewhere_out_of_a_bay_it_goes_where_the_last_leg_leads(bay_bench:
     (asked,) = claims(bay_bench)
     aside = (leg("post3_bay1", "post3"), leg("post3", "post2"))
     answered(bay_bench, Detour(claim_id=asked.claim_id, legs=aside, reason="Others have to pass."))
-    assert detour(bay_bench.hands) == aside[-1]
+    assert bay_bench.navigator.detour == aside[-1]
     assert [failure for _, failure in bay_bench.actions.finished(0.0)] == [None]
 
 

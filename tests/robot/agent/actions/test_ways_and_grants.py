@@ -8,7 +8,7 @@ import pytest
 from protocol.envelope import Envelope
 from protocol.parts import Leg
 from protocol.to_robot import Detour
-from robot.agent.actions.corridors import AWAITS_NETWORK_S, detour
+from robot.agent.actions.corridors import AWAITS_NETWORK_S
 from robot.drivers.interfaces import LineReading
 from tests.robot.agent.actions.bench import MISSION, NOW, TO_POST1, TO_POST3, TO_POST4, Bench, with_server
 
@@ -136,12 +136,12 @@ def test_out_of_network_it_keeps_what_it_was_granted_and_leaves_by_it(bench: Ben
     assert bench.missions.held.grants == (TO_POST3, TO_POST4)
     out_of_network(bench, AWAITS_NETWORK_S)
     assert bench.actions.finished(0.1) == [(waiting, None)]
-    assert detour(bench.hands) == TO_POST3
+    assert bench.navigator.detour == TO_POST3
     assert bench.told()[-1].startswith('{"claim_id"'), "what it asked for it takes back"
     bench.navigator.destination = "post3"
     assert bench.result("claim(post3)") is None
     bench.navigator.place("post3", "post4")
-    assert detour(bench.hands) is None, "from there it goes its own way"
+    assert bench.navigator.detour is None, "from there it goes its own way"
 
 
 def test_out_of_network_it_leaves_by_no_corridor_in_which_it_has_turned_back(bench: Bench) -> None:
@@ -156,7 +156,7 @@ def test_out_of_network_it_waits_for_no_other_way_than_it_has(bench: Bench) -> N
     with_server(bench, TO_POST3, online=False)
     out_of_network(bench, AWAITS_NETWORK_S)
     assert bench.result("claim(post3)") is None
-    assert detour(bench.hands) is None
+    assert bench.navigator.detour is None
 
 
 def crosses(bench: Bench, here: str, there: str) -> None:
@@ -185,10 +185,10 @@ def test_out_of_network_it_does_not_drive_to_and_fro(bench: Bench) -> None:
     crosses(bench, "post3", "post2")
     for_post1 = bench.ask("claim(post1)")
     out_of_network(bench, AWAITS_NETWORK_S)
-    assert bench.actions.finished(0.1) == [(for_post1, None)] and detour(bench.hands) == TO_POST3
+    assert bench.actions.finished(0.1) == [(for_post1, None)] and bench.navigator.detour == TO_POST3
     crosses(bench, "post2", "post3")
     crosses(bench, "post3", "post2")
-    assert detour(bench.hands) is None, "it has been there"
+    assert bench.navigator.detour is None, "it has been there"
     bench.ask("claim(post1)")
     out_of_network(bench, 3 * AWAITS_NETWORK_S)
     assert bench.actions.finished(0.1) == [], "it would only come back"
