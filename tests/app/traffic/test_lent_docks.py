@@ -98,3 +98,20 @@ async def test_a_robot_in_a_lent_dock_that_is_switched_off_is_not_missed(service
     clock.advance(service.app.state.parts.settings.vanished_after_s + 60)
     await service.app.state.parts.traffic_service.poll()
     assert await service.rows(Alarm, name=VANISHED) == []
+
+
+async def test_a_robot_that_goes_elsewhere_than_it_was_told_is_let_in_there(
+    service: Service, clock: SteppedClock
+) -> None:
+    """It knows best when it has to charge: before its bay the service has not forgotten that it wants to go there."""
+    floor = Floor()
+    (one,) = travellers(clock, floor, HOMES_WITHOUT_A_DOCK[:1])
+    async with one.greeted(service):
+        await one.go_to("post3")
+        await tells(service, one, 0.45, docked=False)
+        await service.app.state.parts.charging_service.poll()
+        (stop,) = (await one.robot.mission()).stops
+        assert stop.post == "post2"
+        async with asyncio.timeout(30.0):
+            await one.go_to(one.home)
+        assert (one.place, floor.asides) == (one.home, 0)
