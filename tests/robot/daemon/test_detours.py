@@ -45,7 +45,7 @@ def ring(folder: Path) -> Path:
 
 
 class SendsRound(PlayedService):
-    """It sends the robot to c the other way round. Further than its next corridor or bay it lets it go nowhere."""
+    """It sends the robot to b by way of d and c. It lets it go no further than its next corridor or bay."""
 
     def grant(self, claim: Claim) -> None:
         *before, last = claim.legs[: 2 if claim.legs[0].from_post.startswith("a_bay") else 1]
