@@ -12,8 +12,10 @@ from maps import CampusMap, NoRoute, corridor_name, shortest_route
 from maps.geometry import wrapped
 from protocol.parts import Leg
 from robot.agent.tracking import Tracker
+from robot.drivers.interfaces import BaseState, BodyShape, Odometry
 from robot.localization.bays import bay_for, places_to_stand
 from robot.localization.closed import Closed, open_way
+from robot.localization.counted_turn import TurnBegun
 from robot.localization.directions import PLAIN_TURNS, Way, kept_from, next_post, sector
 from robot.localization.docks import nearest_dock, way_out
 from robot.localization.expected import SHARE, wrong_corridor
@@ -39,8 +41,12 @@ ASKS_BEFORE_MM = 2000.0
 class Navigator(Tracker):
     """Place and destination. Told by actions what they are about to do, and by the body what it sees."""
 
-    def __init__(self, campus: CampusMap, home: str | None, missions: MissionManager, now: float) -> None:
+    def __init__(
+        self, campus: CampusMap, home: str | None, missions: MissionManager, now: float, shape: BodyShape | None = None
+    ) -> None:
         super().__init__(campus, home, missions)
+        self._shape, self._base = shape or BodyShape(), BaseState(now)
+        self._turn = missions.turns.kept() if self._moment is Moment.TURNING else None
         self.destination: str | None = None
         self.closed = Closed(missions.closed_ages_s(), missions.keep_closed, now)
         missions.open_way = partial(open_way, campus, self.closed)
@@ -49,7 +55,18 @@ class Navigator(Tracker):
     def look(self, view: View) -> None:
         """Take in what the body sees now."""
         self.closed.pass_time(view.at_s)
+        if view.base:
+            self._base = view.base
+            self._recall_turn(view.odometry)
         super().look(view)
+
+    def _recall_turn(self, odometry: Odometry) -> None:
+        """It was switched off in a turn: what its base has counted since tells which way it looks."""
+        turn, self._turn = self._turn, None
+        looks_rad = turn.looks_now_rad(self._base, self._shape) if turn else None
+        if looks_rad is not None:
+            self._facing = Facing.of(looks_rad, odometry)
+            self._compass.set(looks_rad, odometry)
 
     # What actions and percepts ask.
 
@@ -72,8 +89,13 @@ class Navigator(Tracker):
 
     @property
     def doubted(self) -> str | None:
-        """The post just before which it was switched off, while it cannot tell whether it has passed it."""
+        """The post just before which it was switched off, while it cannot tell whether it has passed it; where it was
+        switched off in a turn, until its base is heard; and the crossing where it looks anywhere, if it has a service:
+        each line may be another robot's there."""
         place = self._place
+        looks_anywhere = self.crossing and self._facing is None and not self._duties.claims.alone
+        if self.at and (self._turn or looks_anywhere):
+            return self.at
         if isinstance(place, Between | Leaving) and place.doubted:
             return place.towards or place.here
         return None
@@ -306,7 +328,12 @@ class Navigator(Tracker):
         """At a post: after a power cut in the middle of a turn it may look anywhere."""
         if isinstance(self._place, AtPost):
             self._head_for(self._next_post())
-            self._note_moment(Moment.TURNING)
+            self._note_turn()
+
+    def _note_turn(self) -> None:
+        looks_rad, base = self._looks_rad(self._odometry), self._base
+        turn = None if looks_rad is None else TurnBegun(looks_rad, base.left_count, base.right_count)
+        self._note_moment(Moment.TURNING, turn)
 
     def begin_docking(self) -> None:
         """Into the dock or out of it: in between it stands beside the line, and looks anywhere."""
@@ -379,7 +406,7 @@ class Navigator(Tracker):
             if looks_rad is None or abs(wrapped(looks_rad - away_rad)) < STRAIGHT_RAD:
                 self._look_along(away_rad)
             self._place = AtPost(self.here, now_mm, now_mm)
-            self._note_moment(Moment.TURNING)
+            self._note_turn()
 
     def place(self, post: str, towards: str | None) -> None:
         """A person has put the robot down at a post, looking along a corridor. Raises UnknownPost, UnknownCorridor."""

@@ -12,6 +12,7 @@ from robot.localization.approach import is_aslant, post_ahead_mm
 from robot.localization.astray import FROM_MM, TO_MM, Compass, really_towards
 from robot.localization.bays import evidence_of, occupied
 from robot.localization.by_fixes import near_dock
+from robot.localization.counted_turn import TurnBegun
 from robot.localization.directions import turn_towards_rad
 from robot.localization.docks import dock_post
 from robot.localization.expected import Expected, Foreign, agree, expected, hangs_beside_this_line, is_own
@@ -280,9 +281,9 @@ class Tracker:
         if place.by_marker or (place.ahead_mm is not None and place.ahead_mm - self._odometry.ahead_mm < UNREAD_MM):
             self._note_moment(Moment.NEARING)
 
-    def _note_moment(self, moment: Moment) -> None:
+    def _note_moment(self, moment: Moment, turn: TurnBegun | None = None) -> None:
         self._moment = moment
-        self._duties.note_moment(moment)
+        self._duties.note_moment(moment, turn)
 
     def _note_seen(self, post: str) -> None:
         """It stands at this post; what was under way, if anything, has ended where it should."""

@@ -9,6 +9,7 @@
      !come_out;
      !go_to(Post).
 +!go_to(Post) : beside_dock & not no_way_in <- !go_back_in; !go_to(Post).
++!go_to(Post) : doubted(_) & (at(_) | crossing(_)) <- !find_its_way; !go_to(Post).
 +!go_to(Post) : not at(_) & not crossing(_)
   <- set_destination(Post);
      !reach_a_post;
@@ -27,6 +28,14 @@
 +!go_back_in <- dock.
 -!go_back_in <- +no_way_in.
 +docked <- .abolish(no_way_in).
+
+// Switched off in a turn it may look anywhere. Its base has counted on, and tells as soon as it speaks. One that was
+// switched off, too, does not: then each line of a crossing may be another robot's, and it stands until a person puts it
+// into a bay.
++!find_its_way <- .wait(not doubted(_), 10000).
+-!find_its_way
+  <- raise_fault(place_unknown, "it was switched off on a crossing and cannot tell which way it looks");
+     .wait(not doubted(_)).
 
 // Nothing enters a corridor ungranted, the way to a dock included. The robot waits for that at a post, where others can
 // pass it. Where no way is open it tells people, and tries again after half a minute, then ever more rarely: a corridor in

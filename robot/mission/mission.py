@@ -38,6 +38,7 @@ from protocol.to_server import (
     Where,
 )
 from robot.core.errors import RobotError
+from robot.localization.counted_turn import TurnBegun
 from robot.mission.custody import Custody, Proof, Sign, opening
 from robot.mission.memory import Memory
 from robot.mission.occupancy import OccupancyReports
@@ -47,6 +48,7 @@ from robot.mission.returns import is_own, return_mission
 from robot.mission.service_link import Server
 from robot.mission.state import REVOKED, Held
 from robot.mission.store import Store
+from robot.mission.turn_record import TurnRecord
 
 ChargeStep = Literal["low", "charging", "charged"]
 MAIL_ABOARD: Final = "mail_aboard"
@@ -74,6 +76,7 @@ class MissionManager:
         self._server, self._mailroom = server, mailroom
         self.custody = Custody(memory, outbox, utc, sign)
         self.occupancy = OccupancyReports(store, outbox, utc)
+        self.turns = TurnRecord(store)
         self.rearm_asked = False
         """A dispatcher has looked, and lets a stopped robot go again; the mind passes it on."""
         self.stop_asked = False
@@ -384,7 +387,9 @@ class MissionManager:
         self.memory.head(towards)
         self._changed()
 
-    def note_moment(self, moment: str) -> None:
+    def note_moment(self, moment: str, turn: TurnBegun | None = None) -> None:
         """Remembered at once: a power cut now leaves doubt of its place."""
-        self.memory.note_moment(moment)
+        with self._store.transaction():
+            self.turns.keep(turn)
+            self.memory.note_moment(moment)
         self._changed()

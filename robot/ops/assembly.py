@@ -280,7 +280,7 @@ def join(
         (DockInfrared(devices.base),),
     )
     track = campus.track
-    navigator = Navigator(track, _home(settings, campus), missions, now)
+    navigator = Navigator(track, _home(settings, campus), missions, now, shape)
     hands = Hands(drive, navigator, missions, settings.drive.cruise_mm_s, settings.drive.turn_mm_s, shape)
     mode = percept_mode(settings)
     mind = Mind(Agent(program, name=settings.name), Actions(hands, table_for(mode)), hands, settings, mode)

@@ -41,6 +41,8 @@ class SavedWorld:
     def _restore(self, saved: dict[str, Any]) -> None:
         self.restore_place(Pose(saved["x_m"], saved["y_m"], saved["heading_rad"]))
         self._robot.sag(saved["battery_ratio"])
+        base = self._robot.body.base
+        base.left.counts, base.right.counts = map(float, saved["counts"])
 
     def restore_place(self, pose: Pose) -> None:
         """Go on from here; no person has carried the robot."""
@@ -60,13 +62,14 @@ class SavedWorld:
 
     def save(self) -> None:
         """One small write into the open file: a kill comes before or after it, never in the middle."""
-        pose, state = self._robot.pose, self._robot.state()
+        pose, state, base = self._robot.pose, self._robot.state(), self._robot.body.base
         self._kept = pose
         saved = {
             "x_m": pose.x_m,
             "y_m": pose.y_m,
             "heading_rad": pose.heading_rad,
             "battery_ratio": self._robot.battery.ratio,
+            "counts": [base.left.encoder, base.right.encoder],
             # Not read again; for a person who looks at how it ended.
             "mode": state["mode"],
             "wheels_mm_s": [round(speed) for speed in state["wheels_mm_s"]],

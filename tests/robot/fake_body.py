@@ -72,6 +72,11 @@ class FakeBody:
         new = replace(base, charge_mah=charge_mah, capacity_mah=1000, home_base=docked, charging_state=state)
         self.view = replace(self.view, base=new)
 
+    def counts(self, left: int, right: int) -> None:
+        """The base has counted so far, whatever the odometry of the daemon says."""
+        base = self.view.base or BaseState(at_s=self.view.at_s)
+        self.view = replace(self.view, base=replace(base, left_count=left, right_count=right))
+
     def rolls(self, distance_mm: float) -> None:
         old = self.view.odometry
         moved = replace(old, ahead_mm=old.ahead_mm + distance_mm, travelled_mm=old.travelled_mm + abs(distance_mm))

@@ -25,7 +25,8 @@ class MapPosition:
     astray: str | None = None
     """The post that it drives towards by mistake, until it has turned round."""
     doubted: str | None = None
-    """The post just before which it was switched off, while it cannot tell whether it has passed it."""
+    """The post just before which it was switched off, while it cannot tell whether it has passed it, or at which it was
+    switched off in a turn, while it cannot tell which way it looks."""
     beside_dock: bool = False
     """It was switched off on its way into a dock or out of it, and stands beside the line."""
     closed: frozenset[str] = frozenset()

@@ -2,72 +2,20 @@
 
 import math
 from dataclasses import replace
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 
 import pytest
 
-from maps import CampusMap
 from protocol.envelope import Envelope
 from protocol.parts import Leg
 from protocol.to_robot import Detour
-from robot.agent.navigator import Navigator
 from robot.agent.tracking import KEPT_POSTS
 from robot.drivers.interfaces import Sighting
 from robot.localization.closed import CLOSED_S
 from robot.localization.directions import kept_from
-from robot.mission.memory import Memory
-from robot.mission.mission import MissionManager
-from robot.mission.outbox import Outbox
 from robot.mission.store import Store
 from tests.plain_maps import plain_map
-from tests.robot.fake_body import FakeBody
-
-CAMPUS = plain_map("test_track")
-
-
-class Walk:
-    """A navigator with a body that is led through the map by hand."""
-
-    def __init__(
-        self,
-        store: Store,
-        home: str | None = "post5",
-        since_midnight_s: float = 0.0,
-        campus: CampusMap = CAMPUS,
-    ) -> None:
-        utc = datetime(2026, 1, 5, tzinfo=UTC) + timedelta(seconds=since_midnight_s)
-        self.missions = MissionManager(store, Memory(store), Outbox(store), lambda: utc)
-        self.now = 0.0
-        self.navigator = Navigator(campus, home, self.missions, self.now)
-        self.body = FakeBody()
-
-    def look(self) -> None:
-        self.now += 0.1
-        self.body.passes_time(self.now)
-        self.navigator.look(self.body.view)
-
-    def drives_to(self, post: str) -> None:
-        """Off along the line, the marker abreast, the post under the axle."""
-        self.navigator.leave()
-        way_mm = 1000 * self.navigator.ahead_m if self.navigator.corridor else 2000.0
-        self.body.rolls(way_mm - 300.0)
-        self.look()
-        self.body.sees(post)
-        self.look()
-        self.body.rolls(300.0)
-        self.look()
-
-    def turns(self, way: str) -> None:
-        self.body.turns(self.navigator.turn_rad(way))
-        self.look()
-        self.navigator.turned()
-
-
-@pytest.fixture
-def walk(store: Store) -> Walk:
-    walk = Walk(store)
-    walk.look()
-    return walk
+from tests.robot.agent.walk import Walk
 
 
 def test_of_months_of_posts_the_newest_are_kept_and_each_is_told_once() -> None:
@@ -212,41 +160,6 @@ def test_a_power_cut_before_a_post_leaves_doubt_from_its_marker_on_or_from_where
     again = Walk(store)
     again.look()
     assert again.navigator.doubted == doubted
-
-
-def test_a_power_cut_in_the_middle_of_a_turn_leaves_open_which_way_it_looks(walk: Walk, store: Store) -> None:
-    walk.navigator.place("post1", "post2")
-    walk.drives_to("post2")
-    walk.navigator.destination = "post4"
-    walk.navigator.begin_turn()
-    again = Walk(store)
-    again.look()
-    assert again.navigator.at == "post2"
-    ways = {Leg(from_post="post2", to_post=post) for post in ("post1", "post3")}
-    assert set(again.navigator.first_legs("post4")) == ways, "it may look anywhere: each corridor is asked for"
-
-
-def test_a_power_cut_on_a_line_that_it_does_not_know_leaves_it_on_one_of_its_posts_lines(
-    walk: Walk, store: Store
-) -> None:
-    walk.navigator.place("post1", "post2")
-    walk.drives_to("post2")
-    walk.navigator.begin_turn()
-    again = Walk(store)
-    again.look()
-    again.navigator.leave()
-    again.body.rolls(700.0)
-    again.look()
-    for _ in range(2):  # however often it is killed there
-        again = Walk(store)
-        again.look()
-        navigator = again.navigator
-        assert (navigator.here, navigator.at, navigator.towards) == ("post2", None, None)
-        assert navigator.looks_anywhere
-    again.body.sees("post3")
-    again.look()
-    again = Walk(store)
-    assert (again.navigator.here, again.navigator.doubted) == ("post2", "post3"), "its marker told which line it is on"
 
 
 def test_a_power_cut_between_dock_and_post_leaves_it_beside_the_line_until_it_is_in_the_dock_or_away(

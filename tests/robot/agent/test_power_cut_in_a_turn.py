@@ -1,0 +1,72 @@
+"""What the robot knows of its heading after a power cut in the middle of a turn."""
+
+import math
+
+import pytest
+
+from protocol.parts import Leg
+from robot.mission.store import Store
+from tests.robot.agent.walk import Walk
+
+QUARTER_COUNTS = round(235.0 * math.pi / 4 / (72.0 * math.pi / 508.8))
+"""Of each wheel in a quarter turn on the spot."""
+RESET = (9000, 9000)
+
+
+def killed_in_a_turn(walk: Walk, store: Store, counted: tuple[int, int]) -> Walk:
+    """At post2, where it came looking down; its wheels have counted so much further when it is started again."""
+    walk.navigator.place("post1", "post2")
+    walk.drives_to("post2")
+    walk.navigator.destination = "post4"
+    walk.body.counts(-32000, 32000)
+    walk.look()
+    walk.navigator.begin_turn()
+    again = Walk(store)
+    again.navigator.destination = "post4"
+    again.body.counts(-32000 + counted[0], 32000 + counted[1] - 65536 * (counted[1] > 767))
+    return again
+
+
+@pytest.mark.parametrize(
+    ("quarters", "way"), [(0.0, "left"), (1.0, "forward"), (2.0, "right"), (-1.0, "behind"), (-3.5, "forward")]
+)
+def test_killed_in_a_turn_it_knows_by_the_counts_of_its_base_which_way_it_looks(
+    walk: Walk, store: Store, quarters: float, way: str
+) -> None:
+    counts = round(quarters * QUARTER_COUNTS)
+    again = killed_in_a_turn(walk, store, (-counts, counts))
+    assert again.navigator.doubted == "post2", "the base has not been heard"
+    again.look()
+    assert (again.navigator.at, again.navigator.way(), again.navigator.doubted) == ("post2", way, None)
+    assert again.navigator.first_legs("post4") == (Leg(from_post="post2", to_post="post3"),)
+
+
+@pytest.mark.parametrize("counted", [RESET, (-5 * QUARTER_COUNTS, 5 * QUARTER_COUNTS)], ids=["reset", "turned_on"])
+def test_a_base_that_was_reset_or_turned_without_end_leaves_open_which_way_it_looks(
+    walk: Walk, store: Store, counted: tuple[int, int]
+) -> None:
+    again = killed_in_a_turn(walk, store, counted)
+    again.look()
+    assert again.navigator.at == "post2"
+    ways = {Leg(from_post="post2", to_post=post) for post in ("post1", "post3")}
+    assert set(again.navigator.first_legs("post4")) == ways, "it may look anywhere: each corridor is asked for"
+
+
+def test_a_power_cut_on_a_line_that_it_does_not_know_leaves_it_on_one_of_its_posts_lines(
+    walk: Walk, store: Store
+) -> None:
+    again = killed_in_a_turn(walk, store, RESET)
+    again.look()
+    again.navigator.leave()
+    again.body.rolls(700.0)
+    again.look()
+    for _ in range(2):  # however often it is killed there
+        again = Walk(store)
+        again.look()
+        navigator = again.navigator
+        assert (navigator.here, navigator.at, navigator.towards) == ("post2", None, None)
+        assert navigator.looks_anywhere
+    again.body.sees("post3")
+    again.look()
+    again = Walk(store)
+    assert (again.navigator.here, again.navigator.doubted) == ("post2", "post3"), "its marker told which line it is on"
