@@ -26,11 +26,12 @@ def stepped(
     scale: Annotated[float, typer.Option(min=0.01, help="Of its corridors.")] = 0.1,
     kill_every_s: Annotated[float, typer.Option(min=0.0, help="Each robot, on an average; 0: never.")] = 0.0,
     cut_every_s: Annotated[float, typer.Option(min=0.0, help="Its network, the same.")] = 0.0,
+    turns_killed: Annotated[float, typer.Option(min=0.0, max=1.0, help="Share of the turns on a crossing.")] = 0.0,
 ) -> None:
     """Run whole robots with the whole service; ends with 1 if bodies touched or a corridor was entered ungranted."""
     begin_with_like_hashes()
     simulates_only()
-    fleet = Fleet(campus, robots, scale, robots + 2, kill_every_s, cut_every_s)
+    fleet = Fleet(campus, robots, scale, robots + 2, kill_every_s, cut_every_s, turns_killed)
     figures = Run(fleet, minutes, seed).carry_out()
     command = " ".join(["python -m benchmarks.fleet stepped", *sys.argv[2:]])
     print(json.dumps({"mode": "stepped", "code": commit(), "command": command, "figures": figures}, indent=2))

@@ -16,6 +16,7 @@ from robot.core.config import load_settings
 from robot.ops.assembly import Parts, Simulation, assemble
 from robot.ops.runners import Loop
 from robot.simulated import Motion, Pose, SimulatedRobot, World
+from robot.skills import Turn
 from robot.skills.tunes import TUNES
 
 WHEEL_ERROR: Final = 0.01
@@ -71,6 +72,12 @@ class SteppedRobot:
     @property
     def is_on(self) -> bool:
         return bool(self._loops)
+
+    @property
+    def turns_on_a_crossing(self) -> bool:
+        if not self.is_on or self.parts is None:
+            return False
+        return self.parts.navigator.crossing is not None and self.parts.mind.hands.view.motion == Turn.name
 
     def switch_on(self) -> None:
         """Assemble the daemon; after a kill on the disk and in the place that the last one left."""

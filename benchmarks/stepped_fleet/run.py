@@ -31,12 +31,16 @@ from robot.simulated import World
 STEP_S: Final = 0.02
 LOOK_EVERY: Final = 5
 """Steps between two looks of the judge: a tenth of a second."""
+OFF_S: Final = 30.0
+DIES_AFTER_S: Final = (0.1, 1.2)
+"""So long after the beginning of a turn, which takes about a second for a quarter."""
 
 
 @dataclass(frozen=True)
 class Fleet:
     """`scale`: of the corridors. `kill_every_s`: on an average, of each robot, which is off for half a minute then;
-    `cut_every_s`: the same for its network. 0: never."""
+    `cut_every_s`: the same for its network; `turns_killed`: the share of the turns on a crossing in whose middle its
+    daemon is killed. 0: never."""
 
     map: str = "carleton"
     robots: int = 4
@@ -44,6 +48,7 @@ class Fleet:
     waiting: int = 6
     kill_every_s: float = 0.0
     cut_every_s: float = 0.0
+    turns_killed: float = 0.0
 
 
 @dataclass
@@ -78,7 +83,8 @@ class Run:
         await self._put_down(campus, world, folder, clock, service)
         bystanders = Bystanders(people, campus.track, Random(f"{self.seed} bystanders"))
         ordering = Saturated(self.fleet.waiting).run(people, sorted(campus.posts), Random(f"{self.seed} orders"))
-        tasks = [asyncio.create_task(ordering), *(asyncio.create_task(self._befalls(one)) for one in self.robots)]
+        fates = [fate(one) for one in self.robots for fate in (self._befalls, self._dies_turning)]
+        tasks = [asyncio.create_task(one) for one in (ordering, *fates)]
         await self._step(clock, service, floor, bystanders, tasks)
         found = await self._figures(service, people, floor, bystanders, process_time() - begun_s)
         for task in tasks:
@@ -141,13 +147,29 @@ class Run:
             await asyncio.sleep(wait_s)
             due = {other: left_s - wait_s for other, left_s in due.items()}
             due[what] = rng.expovariate(1 / rates[what])
-            self.befallen[what] += 1
             if what == "kill":
-                one.kill()
-                await asyncio.sleep(30.0)
-                one.switch_on()
+                await self._kill(one, what)
             else:
+                self.befallen[what] += 1
                 await one.network.be_away(rng.uniform(5.0, 120.0))
+
+    async def _dies_turning(self, one: SteppedRobot) -> None:
+        rng = Random(f"{self.seed} {one.name} turns")
+        turned = False
+        while True:
+            await asyncio.sleep(STEP_S)
+            turned, turned_before = one.turns_on_a_crossing, turned
+            if turned_before or not turned or rng.random() >= self.fleet.turns_killed:
+                continue
+            await asyncio.sleep(rng.uniform(*DIES_AFTER_S))
+            if one.turns_on_a_crossing:
+                await self._kill(one, "kill in a turn")
+
+    async def _kill(self, one: SteppedRobot, what: str) -> None:
+        self.befallen[what] += 1
+        one.kill()
+        await asyncio.sleep(OFF_S)
+        one.switch_on()
 
     async def _figures(
         self, service: Service, people: People, floor: TrueFloor, bystanders: Bystanders, took_s: float
