@@ -93,7 +93,7 @@ class LetterRun:
         self.random, self._world, self._seed = Random(f"{world}/{seed}/letter"), world, seed
         self._motion, self._slip, self._drains_to = motion or Motion(), slip, drains_to
         self._folder, self.clock, self.campus = folder, SteppedClock(), campus_of(WORLDS[world])
-        self._home = self.random.choice(self.campus.docks()).name
+        self._track, self._home = self.campus.track, self.random.choice(self.campus.docks()).name
         self._codes = {purpose: f"CM1:{self.random.randbytes(16).hex()}" for purpose in STOPS}
         self.told: list[Part] = []
         self.problems: list[str] = []
@@ -150,15 +150,15 @@ class LetterRun:
 
     def distance_m(self, post: str) -> float:
         pose = self.robot.pose
-        return math.dist(self.campus.post(post).point, (pose.x_m, pose.y_m))
+        return math.dist(self._track.post(post).point, (pose.x_m, pose.y_m))
 
     def _judge(self) -> None:
         pose, at = self.robot.pose, self.navigator.at
-        corridor = corridor_at(self.campus, pose.x_m, pose.y_m)
+        corridor = corridor_at(self._track, pose.x_m, pose.y_m)
         granted = {corridor_name(leg.from_post, leg.to_post) for leg in self._held}
         if corridor and corridor not in granted:
             self._complain(f"in {corridor} without a grant")
-        if at and self.distance_m(at) > (AT_DOCK_M if self.campus.post(at).dock else POST_ROOM_M):
+        if at and self.distance_m(at) > (AT_DOCK_M if self._track.post(at).dock else POST_ROOM_M):
             self._complain(f"believes to stand at {at}")
 
     def _complain(self, problem: str) -> None:
