@@ -97,11 +97,17 @@ def _granted_ahead(hands: Hands, way: Sequence[Leg]) -> Iterator[Leg]:
 
 def _way_out_of_silence(hands: Hands, asked_s: float) -> Leg | None:
     """A corridor from here that it holds and has not come through yet, where no answer can reach it; None while one may
-    come."""
+    come. Out of a bay that is the one beyond the crossing."""
     if "link_loss" not in hands.view.faults or hands.view.at_s - asked_s < AWAITS_NETWORK_S:
         return None
-    unused = tuple(leg for leg in hands.missions.held.grants if leg not in hands.navigator.crossed)
-    return next((leg for leg in _from_here(hands, unused) if not _is_closed(hands, leg)), None)
+    navigator, grants = hands.navigator, hands.missions.held.grants
+    here = navigator.at or ""
+    post = navigator.campus.address_of(here)
+    if post != here and Leg(from_post=here, to_post=post) not in grants:
+        return None
+    unused = (leg for leg in grants if leg.from_post == post and leg not in navigator.crossed)
+    open_ones = (leg for leg in unused if not _is_closed(hands, leg))
+    return next((leg for leg in open_ones if post == here or not navigator.campus.post(leg.to_post).bay_of), None)
 
 
 def _is_closed(hands: Hands, leg: Leg) -> bool:

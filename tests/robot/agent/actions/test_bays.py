@@ -1,7 +1,7 @@
 """On a map with bays: what a robot asks for out of a bay and before a crossing, and where the answer sends it."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pytest
@@ -14,7 +14,7 @@ from protocol.envelope import Envelope, type_of
 from protocol.parts import Leg
 from protocol.to_robot import Deny, Detour, Grant
 from protocol.to_server import Claim
-from robot.agent.actions.corridors import AskAhead
+from robot.agent.actions.corridors import AWAITS_NETWORK_S, AskAhead
 from robot.agent.navigator import Navigator
 from robot.mission.memory import Incoming
 from robot.mission.store import Store
@@ -90,6 +90,29 @@ def test_out_of_a_bay_it_goes_only_together_with_what_comes_after_the_crossing(b
     assert bay_bench.actions.finished(0.0) == []
     answered(bay_bench, Grant(claim_id=asked.claim_id, legs=asked.legs[1:2]))
     assert [failure for _, failure in bay_bench.actions.finished(0.0)] == [None]
+
+
+@pytest.mark.parametrize(
+    ("held", "taken"),
+    [
+        ([leg("post3_bay1", "post3")], None),
+        ([leg("post3", "post4")], None),
+        ([leg("post3_bay1", "post3"), leg("post3", "post3_bay1")], None),
+        ([leg("post3_bay1", "post3"), leg("post3", "post4")], leg("post3", "post4")),
+    ],
+)
+def test_out_of_a_bay_without_network_it_goes_only_where_a_corridor_leads_on(
+    bay_bench: BayBench, held: list[Leg], taken: Leg | None
+) -> None:
+    bay_bench.navigator.place("post3_bay1", "post3")
+    bay_bench.missions.memory.grant(held)
+    bay_bench.missions._changed()
+    bay_bench.server.online = False
+    bay_bench.ask("claim(post5)")
+    silence = replace(bay_bench.body.view, at_s=AWAITS_NETWORK_S, faults=frozenset({"link_loss"}))
+    bay_bench.hands.view = bay_bench.body.view = silence
+    assert [failure for _, failure in bay_bench.actions.finished(0.0)] == ([] if taken is None else [None])
+    assert detour(bay_bench.hands) == taken
 
 
 def test_on_a_crossing_it_asks_for_nothing_beyond_the_corridor_that_it_may_enter(bay_bench: BayBench) -> None:
