@@ -9,7 +9,7 @@ import pytest
 from robot.localization.astray import really_towards
 from robot.mission.store import Store
 from tests.plain_maps import plain_map
-from tests.robot.agent.test_navigator import Walk
+from tests.robot.agent.walk import Walk
 
 TRACK = plain_map("test_track")
 

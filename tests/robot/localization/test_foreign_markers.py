@@ -8,7 +8,7 @@ import pytest
 from protocol.parts import Leg
 from robot.mission.store import Store
 from robot.simulated.start import start_pose
-from tests.robot.agent.test_navigator import CAMPUS, Walk
+from tests.robot.agent.walk import CAMPUS, Walk
 from tests.robot.daemon.simulated_run import SimulatedRun
 
 LEG = Leg(from_post="post2", to_post="post3")

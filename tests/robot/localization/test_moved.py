@@ -13,7 +13,7 @@ from robot.localization.expected import hangs_beside_this_line
 from robot.localization.facing import facing_by
 from robot.mission.store import Store
 from tests.plain_maps import plain_map
-from tests.robot.agent.test_navigator import Walk
+from tests.robot.agent.walk import Walk
 
 TRACK = plain_map("test_track")
 LEG = Leg(from_post="post1", to_post="post2")

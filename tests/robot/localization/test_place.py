@@ -9,7 +9,7 @@ from robot.localization.place import AtPost, Between, Coming, Leaving, Unknown
 from robot.localization.steps import has_reached, marked, set_out, turned_round
 from robot.mission.store import Store
 from tests.plain_maps import plain_map
-from tests.robot.agent.test_navigator import Walk
+from tests.robot.agent.walk import Walk
 
 TRACK = plain_map("test_track")
 WAY = TRACK.corridor("post2", "post3")
