@@ -1,4 +1,7 @@
-"""The saved state of a simulated world: the robot stands where its daemon died. (A real base rolls on for a while.)"""
+"""The saved state of a simulated world: the robot stands where its daemon died, and its base counts on from there.
+
+A real base rolls on for a while.
+"""
 
 import json
 import os

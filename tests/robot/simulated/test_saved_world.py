@@ -37,6 +37,10 @@ def writes(monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
     return written
 
 
+def wheel_counts(robot: SimulatedRobot) -> tuple[int, int]:
+    return robot.body.base.left.encoder, robot.body.base.right.encoder
+
+
 def test_a_robot_killed_right_after_a_step_is_where_that_step_ended(
     robots: list[SimulatedRobot], tmp_path: Path
 ) -> None:
@@ -49,6 +53,7 @@ def test_a_robot_killed_right_after_a_step_is_where_that_step_ended(
     assert again.pose.x_m == pytest.approx(alive.pose.x_m, abs=AS_WRITTEN_M)
     assert again.pose.y_m == pytest.approx(alive.pose.y_m, abs=AS_WRITTEN_M)
     assert again.pose.heading_rad == pytest.approx(alive.pose.heading_rad)
+    assert wheel_counts(again) == wheel_counts(alive) != (0, 0), "its base has not been switched off"
     world.close()
     found.close()
 
