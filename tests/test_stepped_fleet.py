@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.stepped_fleet.judge import TrueFloor
-from benchmarks.stepped_fleet.run import Fleet, Run
+from benchmarks.stepped_fleet.run import OFF_S, Fleet, Run
 from maps import find_map
 from robot.simulated.true_poses import TruePose
 
@@ -47,3 +47,15 @@ def test_two_robots_with_the_whole_service_deliver_and_touch_nothing():
     assert (figures["touches"], figures["ungranted"], figures["astray"]) == (0, [], [])
     assert figures["orders"]["delivered"] >= 1
     assert 0 < figures["longest_on_a_crossing_s"] < 20
+
+
+@pytest.mark.nightly
+def test_robots_killed_in_turns_on_a_crossing_go_on_among_others_and_touch_nothing():
+    fleet = Fleet(str(MAP.with_name("star.toml")), robots=3, scale=1.0, waiting=4, turns_killed=0.5)
+    figures = Run(fleet, minutes=10, seed=1).carry_out()
+    assert (figures["touches"], figures["ungranted"], figures["astray"]) == (0, [], [])
+    assert figures["befallen"]["kill in a turn"] >= 5
+    assert figures["befallen"]["kill in a turn beside others"] >= 1
+    assert figures["alarms"] == {}, "no person is asked"
+    assert figures["longest_on_a_crossing_s"] < 3 * OFF_S, "one that is killed twice there goes on, too"
+    assert figures["orders"]["delivered"] >= 5

@@ -1,6 +1,7 @@
 """One run: a fleet of whole robots on a campus for some minutes, and what the bodies did."""
 
 import asyncio
+import math
 import tempfile
 from collections import Counter
 from dataclasses import dataclass, field
@@ -32,6 +33,7 @@ STEP_S: Final = 0.02
 LOOK_EVERY: Final = 5
 """Steps between two looks of the judge: a tenth of a second."""
 OFF_S: Final = 30.0
+NEAR_M: Final = 1.2
 DIES_AFTER_S: Final = (0.1, 1.2)
 """So long after the beginning of a turn, which takes about a second for a quarter."""
 
@@ -147,10 +149,10 @@ class Run:
             await asyncio.sleep(wait_s)
             due = {other: left_s - wait_s for other, left_s in due.items()}
             due[what] = rng.expovariate(1 / rates[what])
+            self.befallen[what] += 1
             if what == "kill":
-                await self._kill(one, what)
+                await self._kill(one)
             else:
-                self.befallen[what] += 1
                 await one.network.be_away(rng.uniform(5.0, 120.0))
 
     async def _dies_turning(self, one: SteppedRobot) -> None:
@@ -163,10 +165,17 @@ class Run:
                 continue
             await asyncio.sleep(rng.uniform(*DIES_AFTER_S))
             if one.turns_on_a_crossing:
-                await self._kill(one, "kill in a turn")
+                self.befallen["kill in a turn"] += 1
+                self.befallen["kill in a turn beside others"] += self._others_near(one)
+                await self._kill(one)
 
-    async def _kill(self, one: SteppedRobot, what: str) -> None:
-        self.befallen[what] += 1
+    def _others_near(self, one: SteppedRobot) -> bool:
+        """Others in a bay of that post, or before its crossing."""
+        here = one.body.pose
+        others = (other.body.pose for other in self.robots if other is not one)
+        return any(math.dist((here.x_m, here.y_m), (there.x_m, there.y_m)) < NEAR_M for there in others)
+
+    async def _kill(self, one: SteppedRobot) -> None:
         one.kill()
         await asyncio.sleep(OFF_S)
         one.switch_on()
