@@ -118,8 +118,16 @@ class BayTrafficSchedule(TrafficSchedule):
             return self._waits(one, asked, None, now_s)
         let_in = self.controller.comes_in(one.robot, post, now_s)
         if isinstance(let_in, LetIn):
-            return MayEnter(one.robot, ((post, bay),), aside=self._is_lane(asked))
+            legs = ((post, bay), *self._out_of_silence(one, post, bay))
+            return MayEnter(one.robot, legs, aside=self._is_lane(asked))
         return self._waits(one, asked, let_in, now_s)
+
+    def _out_of_silence(self, one: RobotLocation, post: str, bay: str) -> tuple[Leg, ...]:
+        """From a bay without network it cannot ask for a way out. It gets the one by which it comes: no report of it
+        comes from there either, so that corridor and crossing stay its own."""
+        if self.track.post(post).network or one.occupies is None:
+            return ()
+        return (bay, post), (post, one.occupies.place)
 
     def _off_the_crossing(self, one: RobotLocation, where: Place, now_s: float) -> Verdict:
         """It could not get into its bay, or was put on the crossing: into another bay, which is kept for it."""

@@ -40,10 +40,15 @@ def asks(robot: RobotLocation, goal: str, *places: str) -> RobotLocation:
 
 
 def verdicts(
-    settings: Settings, *pictures: RobotLocation | tuple[RobotLocation, ...], every_s: float = 1.0
+    settings: Settings,
+    *pictures: RobotLocation | tuple[RobotLocation, ...],
+    every_s: float = 1.0,
+    silent: str | None = None,
 ) -> list[Verdict]:
-    """On the last of these pictures."""
-    schedule, found = BayTrafficSchedule(find_map(MAP), settings), list[Verdict]()
+    """On the last of these pictures. `silent`: a post without network."""
+    campus = find_map(MAP)
+    posts = {name: replace(post, network=name != silent) for name, post in campus.posts.items()}
+    schedule, found = BayTrafficSchedule(replace(campus, posts=posts), settings), list[Verdict]()
     for number, picture in enumerate(pictures):
         robots, now_s = picture if isinstance(picture, tuple) else (picture,), number * every_s
         schedule.follow(TrafficSnapshot({one.robot: one for one in robots}, frozenset()), {}, now_s)
@@ -184,3 +189,29 @@ def test_who_asks_for_a_dock_that_another_stands_in_is_not_let_onto_the_crossing
         settings, (replace(charges, goals=()), asks(waits, "post2", "post2_bay1", "post2", "post2_bay2"))
     )
     assert [type(one) for one in answers] == [HasToWait]
+
+
+INTO, BACK = ("post4", "post4_bay1"), ("post4", "post3")
+
+
+@pytest.mark.parametrize(("silent", "way_out"), [(None, ()), ("post3", ()), ("post4", (INTO[::-1], BACK))])
+def test_into_a_bay_without_network_a_robot_is_let_with_its_way_out(
+    settings: Settings, silent: str | None, way_out: tuple[tuple[str, str], ...]
+) -> None:
+    comes = replace(GUEST, holds=(Hold("post3", "post4", 1),), occupies=Occupied("corridor", "post3", "post4"))
+    asking = asks(comes, "post4", *INTO)
+    assert verdicts(settings, comes, asking, silent=silent) == [MayEnter("r1", (INTO, *way_out))]
+
+
+def test_none_is_let_over_a_crossing_without_network_before_who_stands_there_has_been_heard(settings: Settings) -> None:
+    """It says nothing more from there: not when it crosses, nor when it is in its bay or on its way back."""
+    there = Hold("post4", "post4_bay1", 2), Hold("post4_bay1", "post4", 3), Hold("post4", "post3", 4)
+    holds = (Hold("post3", "post4", 1), *there)
+    silent = replace(GUEST, online=False, holds=holds, occupies=Occupied("corridor", "post3", "post4"))
+    goals = (Stop("stop", "post4"),)
+    other = replace(GUEST, robot="r2", post="post3", goals=goals, occupies=Occupied("bay", "post3_bay1"))
+    asking = asks(other, "post4", "post3_bay1", "post3", "post4", "post4_bay1")
+    back = replace(silent, online=True, occupies=Occupied("corridor", "post4", "post3"))
+    for pictures in (((silent, asking),), ((silent, other), (back, asking))):
+        found = verdicts(settings, *pictures, silent="post4")
+        assert not any("post4" in leg for one in found if isinstance(one, MayEnter) for leg in one.legs)

@@ -112,7 +112,7 @@ def test_out_of_a_bay_without_network_it_goes_only_where_a_corridor_leads_on(
     silence = replace(bay_bench.body.view, at_s=AWAITS_NETWORK_S, faults=frozenset({"link_loss"}))
     bay_bench.hands.view = bay_bench.body.view = silence
     assert [failure for _, failure in bay_bench.actions.finished(0.0)] == ([] if taken is None else [None])
-    assert detour(bay_bench.hands) == taken
+    assert bay_bench.hands.navigator.detour == taken
 
 
 def test_on_a_crossing_it_asks_for_nothing_beyond_the_corridor_that_it_may_enter(bay_bench: BayBench) -> None:
