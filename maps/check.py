@@ -34,6 +34,7 @@ def _of_map(file: MapFile, campus: CampusMap) -> Iterator[Problem]:
     yield from _unreachable(campus)
     yield from _docks(campus)
     yield from _silent_docks(campus)
+    yield from _silent_corridors(campus)
     yield from places_problems(campus)
     yield from room_problems(campus)
     yield from marker_problems(campus)
@@ -87,6 +88,14 @@ def _silent_docks(campus: CampusMap) -> Iterator[Problem]:
         if not post.network:
             said = f"there is no network at {post.name}, so a robot that rests in its dock hears of no order"
             yield warning("silent_dock", post.name, said, "Bring the network there, or move the dock.")
+
+
+def _silent_corridors(campus: CampusMap) -> Iterator[Problem]:
+    for corridor in campus.corridors:
+        crossings = [post for post in (corridor.a, corridor.b) if campus.post(post).spurs]
+        if crossings and not corridor.network:
+            said = f"there is no network, so a robot that waits there before {crossings[0]} cannot ask for a way on"
+            yield warning("silent_corridor", corridor.name, said, "Bring the network there.")
 
 
 def _reached(campus: CampusMap, start: str) -> frozenset[str]:

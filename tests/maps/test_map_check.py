@@ -161,6 +161,12 @@ def test_a_dock_without_network_is_a_warning(write_map):
     ]
 
 
+def test_a_corridor_without_network_before_a_crossing_is_a_warning(write_map):
+    bays = (FOLDER / "test_track.toml").read_text(encoding="utf-8")
+    silent = bays.replace('ends = ["post2", "post3"]', 'ends = ["post2", "post3"]\nnetwork = false')
+    assert list(problems_of(write_map, silent)) == ["warning silent_corridor post2-post3"]
+
+
 def test_a_name_beyond_14_characters_makes_a_dense_marker(write_map):
     assert problems_of(write_map, TRACK.replace('"post1"', '"dormitories_14"')) == {}
     found = problems_of(write_map, TRACK.replace('"post1"', '"residences_of15"'))
