@@ -11,6 +11,7 @@ from maps import find_map
 from robot.simulated.true_poses import TruePose
 
 MAP = Path(__file__).parent / "bays.toml"
+STAR = MAP.with_name("star.toml")
 TRACK = find_map(MAP).track
 
 
@@ -50,8 +51,9 @@ def test_two_robots_with_the_whole_service_deliver_and_touch_nothing():
 
 
 @pytest.mark.nightly
+@pytest.mark.timeout(600)
 def test_robots_killed_in_turns_on_a_crossing_go_on_among_others_and_touch_nothing():
-    fleet = Fleet(str(MAP.with_name("star.toml")), robots=3, scale=1.0, waiting=4, turns_killed=0.5)
+    fleet = Fleet(str(STAR), robots=3, scale=1.0, waiting=4, turns_killed=0.5)
     figures = Run(fleet, minutes=10, seed=1).carry_out()
     assert (figures["touches"], figures["ungranted"], figures["astray"]) == (0, [], [])
     assert figures["befallen"]["kill in a turn"] >= 5
@@ -59,3 +61,14 @@ def test_robots_killed_in_turns_on_a_crossing_go_on_among_others_and_touch_nothi
     assert figures["alarms"] == {}, "no person is asked"
     assert figures["longest_on_a_crossing_s"] < 3 * OFF_S, "one that is killed twice there goes on, too"
     assert figures["orders"]["delivered"] >= 5
+
+
+@pytest.mark.nightly
+@pytest.mark.timeout(600)
+def test_robots_come_out_again_of_the_bays_of_a_post_without_network_and_touch_nothing(tmp_path: Path):
+    silent = tmp_path / "silent.toml"
+    silent.write_text(STAR.read_text().replace('name = "south"', 'name = "south"\nnetwork = false'))
+    figures = Run(Fleet(str(silent), robots=2, scale=1.0, waiting=3), minutes=6, seed=1).carry_out()
+    assert (figures["touches"], figures["ungranted"]) == (0, [])
+    assert figures["befallen"]["silence"] >= 1
+    assert figures["orders"]["delivered"] >= 4

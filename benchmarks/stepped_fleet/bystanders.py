@@ -19,6 +19,8 @@ SHOWS_S: Final = 15.0
 IN_BAY_M: Final = 0.3
 IN_DOCK_M: Final = 0.8
 PURPOSES: Final = {OrderState.AT_SENDER: Purpose.LOAD, OrderState.AT_RECIPIENT: Purpose.RECEIVE}
+UNTOLD: Final = {OrderState.TO_SENDER: Purpose.LOAD, OrderState.CARRYING: Purpose.RECEIVE}
+"""Where there is no network the service does not know that the robot has come, and people see it themselves."""
 
 
 @dataclass
@@ -39,14 +41,15 @@ class Bystanders:
         by_name = {robot.name: robot for robot in robots if robot.is_on}
         for order in await self._at_stops():
             robot = by_name.get(order.robot or "")
-            purpose = PURPOSES[OrderState(order.state)]
+            is_told = order.state in PURPOSES
+            purpose = (PURPOSES | UNTOLD)[OrderState(order.state)]
             post = order.from_post if purpose is Purpose.LOAD else order.to_post
-            if robot is not None and self._stands_at(robot, post):
+            if is_told == self.track.post(post).network and robot is not None and self._stands_at(robot, post):
                 self._attend(robot, order.id, purpose, now)
 
     async def _at_stops(self) -> list[Order]:
         async with self.people.parts.database.reading() as session:
-            return list((await session.exec(select(Order).where(col(Order.state).in_(list(PURPOSES))))).all())
+            return list((await session.exec(select(Order).where(col(Order.state).in_([*PURPOSES, *UNTOLD])))).all())
 
     def _stands_at(self, robot: SteppedRobot, post: str) -> bool:
         pose = robot.body.pose

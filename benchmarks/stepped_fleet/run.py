@@ -22,6 +22,7 @@ from benchmarks.fleet_simulation.service import MEMORY, SHIPPED, PlansInRounds, 
 from benchmarks.stepped_fleet.bystanders import Bystanders
 from benchmarks.stepped_fleet.judge import TrueFloor
 from benchmarks.stepped_fleet.robots import SteppedRobot
+from benchmarks.stepped_fleet.silence import keep_silent
 from maps import CampusMap, read_map
 from maps.campus_map import map_path
 from maps.map_file import load_map_file, toml_of
@@ -86,7 +87,8 @@ class Run:
         bystanders = Bystanders(people, campus.track, Random(f"{self.seed} bystanders"))
         ordering = Saturated(self.fleet.waiting).run(people, sorted(campus.posts), Random(f"{self.seed} orders"))
         fates = [fate(one) for one in self.robots for fate in (self._befalls, self._dies_turning)]
-        tasks = [asyncio.create_task(one) for one in (ordering, *fates)]
+        silences = [keep_silent(one, campus.track, self.befallen) for one in self.robots]
+        tasks = [asyncio.create_task(one) for one in (ordering, *fates, *silences)]
         await self._step(clock, service, floor, bystanders, tasks)
         found = await self._figures(service, people, floor, bystanders, process_time() - begun_s)
         for task in tasks:
