@@ -76,8 +76,8 @@ class BayTrafficSchedule(TrafficSchedule):
         """Out of the bay, over the crossing, into the corridor; or to its own home at the same post."""
         assert one.request is not None and one.occupies is not None  # noqa: S101
         bay, post = one.occupies.place, where.post
-        asked = next((leg for leg in one.request.legs if self._is_lane(leg)), None)
-        if asked is None or asked[0] != post:
+        asked = next((leg for leg in one.request.legs if leg[0] == post), None)
+        if asked is None or not self._is_lane(asked):
             return self._aside(one, bay, post, now_s, asked=True)
         if one.goals and one.goals[0].post == one.request.goal == post:
             return None  # first it does here what it has to do

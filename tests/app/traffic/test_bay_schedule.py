@@ -66,10 +66,15 @@ def test_who_has_something_to_do_where_it_stands_keeps_no_corridor_from_others_m
     assert verdicts(settings, busy, done) == [MayEnter("r1", (WAY[:2], WAY[1:3]))]
 
 
-def test_who_goes_home_from_another_bay_of_its_post_is_let_in(settings: Settings) -> None:
-    at_home_post = replace(GUEST, post="post5", occupies=Occupied("bay", "post5_bay1"), goals=(Stop("own", "post5"),))
+@pytest.mark.parametrize("goal", [Stop("own", "post5"), Stop("dock", "post5", charges_to=0.8)])
+@pytest.mark.parametrize("then", [(), ("post5", "post3", "post4", "post4_bay1")])
+def test_who_goes_home_from_another_bay_of_its_post_is_let_in(
+    settings: Settings, goal: Stop, then: tuple[str, ...]
+) -> None:
+    """Also when it says where it goes after that."""
+    at_home_post = replace(GUEST, post="post5", occupies=Occupied("bay", "post5_bay1"), goals=(goal,))
     home = "post5_bay1", "post5", "post5_bay2"
-    assert verdicts(settings, asks(at_home_post, "post5", *home)) == [MayEnter("r1", (home[:2], home[1:]))]
+    assert verdicts(settings, asks(at_home_post, "post5", *home, *then)) == [MayEnter("r1", (home[:2], home[1:]))]
 
 
 def test_who_has_left_its_corridor_is_on_the_crossing_also_before_it_says_so(settings: Settings) -> None:
