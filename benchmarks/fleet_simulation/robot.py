@@ -250,9 +250,9 @@ class Mind:
         if leg is None:
             await self._wait_for_leave()
             return
-        aside = self.route.detour
-        if aside is not None and aside.to_post != goal and not self.track.bays_of(aside.to_post):
-            self._asides.append(aside.to_post)
+        aside = self.route.stops_aside
+        if aside is not None and aside != goal:
+            self._asides.append(aside)
             return
         self._goes_on()
         self._shows(Activity.DRIVING)

@@ -11,6 +11,7 @@ from benchmarks.fleet_simulation.body import Body
 from maps import CampusMap, NoRoute, corridor_name, shortest_route
 from protocol.parts import Leg
 from robot.localization.bays import bay_for, places_to_stand
+from robot.localization.detour import detour_from, place_aside
 from robot.localization.granted import behind
 from robot.mission.mission import MissionManager
 
@@ -58,9 +59,12 @@ class Route:
     @property
     def detour(self) -> Leg | None:
         """Where the service sends it from here."""
-        leg, at = self.missions.held.detour, self.body.at
-        here = (at, self.track.address_of(at)) if at is not None else (self._waits_before,)
-        return leg if leg is not None and leg.from_post in here else None
+        return detour_from(self.track, self.missions.held.detour, self.body.at, self._waits_before)
+
+    @property
+    def stops_aside(self) -> str | None:
+        """Where it has to stand there first."""
+        return place_aside(self.track, self.detour)
 
     @property
     def _waits_before(self) -> str | None:

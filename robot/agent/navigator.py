@@ -16,6 +16,7 @@ from robot.drivers.interfaces import BaseState, BodyShape, Odometry
 from robot.localization.bays import bay_for, places_to_stand
 from robot.localization.closed import Closed, open_way
 from robot.localization.counted_turn import TurnBegun
+from robot.localization.detour import detour_from, place_aside
 from robot.localization.directions import PLAIN_TURNS, Way, kept_from, next_post, sector
 from robot.localization.docks import nearest_dock, way_out
 from robot.localization.expected import SHARE, wrong_corridor
@@ -32,7 +33,6 @@ STRAIGHT_RAD = math.radians(12)
 LOOKS_BACK_MM = 600.0
 """So far back a marker that it has rolled past comes into sight again: it is seen from 500 to 100 mm before its post,
 and a base at 200 mm/s rolls on for half a second."""
-MARKER_UNREAD = "marker_unread"
 SURELY_PAST_M = 0.3
 ASKS_BEFORE_MM = 2000.0
 """Some ten seconds before it is at the waiting point."""
@@ -142,17 +142,12 @@ class Navigator(Tracker):
     @property
     def detour(self) -> Leg | None:
         """The corridor from here that it has to take first, unless it knows that to be closed."""
-        leg, post = self._duties.held.detour, self.at and self.campus.address_of(self.at)
-        if leg is None or leg.from_post not in (self.at, post, self.waits_before):
-            return None
-        return None if corridor_name(leg.from_post, leg.to_post) in self.closed.names else leg
+        return detour_from(self.campus, self._duties.held.detour, self.at, self.waits_before, self.closed.names)
 
     @property
     def stops_aside(self) -> str | None:
-        """The place to which that leads, if it has to stand there first. A post with bays it passes: in the corridor it
-        asks for what comes after, by its own plan."""
-        leg = self.detour
-        return leg.to_post if leg is not None and not self.campus.bays_of(leg.to_post) else None
+        """The place to which that leads, if it has to stand there first."""
+        return place_aside(self.campus, self.detour)
 
     def _not_next(self) -> frozenset[str]:
         """Return the corridors to avoid here: all that does not lead straight to where the service sends it first."""
@@ -366,13 +361,12 @@ class Navigator(Tracker):
         self.moved = None
 
     def reached(self, post: str | None, unread: bool = False) -> None:
-        """follow_line has stopped there. Both go by the same marker, but the body has the last word; `unread`: by the
-        map alone."""
+        """follow_line has stopped there: the body has the last word. `unread`: by the length of the way alone."""
         if post is None:
             return
         # Back at the post that it left it may have turned round beyond the marker.
         if not (isinstance(self._place, Between) and self._place.turned_round):
-            self._note_marker(post, unread)
+            self.unread.note(post, unread)
         place, now_mm = self._place, self._odometry.ahead_mm
         if self.at == post:
             return
@@ -381,17 +375,6 @@ class Navigator(Tracker):
             self._place = marked(self.campus, place, post, now_mm, now_mm)
         if self._place.towards == post:
             self._arrive_along(now_mm, by_marker)
-
-    def _note_marker(self, post: str, unread: bool) -> None:
-        """People are told of a marker that needs cleaning, and when all can be read again."""
-        reason = f"The marker of {post} cannot be read. The robot went there by the length of the way."
-        if unread:
-            self.unread.add(post)
-            self._duties.report_fault(MARKER_UNREAD, reason, post)
-        else:
-            self.unread.discard(post)
-        if not self.unread:
-            self._duties.report_fault(MARKER_UNREAD, "Every marker has been read again.", post, cleared=True)
 
     def undock_way(self) -> tuple[float | None, bool]:
         """From the dock that it stands in to the post, in mm, and whether the line that it takes leads straight on."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 from maps import CampusMap, Corridor, Post
 from maps.geometry import wrapped
 from protocol.parts import Leg
+from robot.agent.unread_markers import UnreadMarkers
 from robot.drivers.interfaces import Odometry, Sighting
 from robot.localization.approach import is_aslant, post_ahead_mm
 from robot.localization.astray import FROM_MM, TO_MM, Compass, really_towards
@@ -54,8 +55,7 @@ class Tracker:
         """The posts reached, in order, the newest ones; the same one twice only after another."""
         self.arrivals = 0
         """How many posts it has reached so far."""
-        self.unread: set[str] = set()
-        """Posts whose marker could not be read when the robot was there last."""
+        self.unread = UnreadMarkers(missions)
         self.moved: str | None = None
         """Where it found itself after it had been moved, until that is noted."""
         self.crossed: tuple[Leg, ...] = ()
