@@ -1,10 +1,11 @@
 """Before each leg: a robot that has not the charge for it is sent to a dock first, while it still comes to one.
 
-Work was given to it because its charge was enough as far as anybody could tell. Then it stood in a corridor, or was led
-another way. Its own battery plan would break off later, and take it to the nearest dock, occupied or not.
+Work was given to it because its charge was enough as far as could be told. Then it stood in a corridor, or was led
+another way. Its own battery plan would break off later, and take it to the nearest dock, occupied or not. The same
+holds on the way home: it passes free docks.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -12,8 +13,9 @@ import structlog
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.charging.errands import send_on_errand
 from app.charging.free_docks import UNTIL_RATIO, free_docks
-from app.dispatch.charge_limits import LEAVES_DOCK, Charges
+from app.dispatch.charge_limits import LEAVES_DOCK, THRESHOLDS, Charges
 from app.dispatch.open_work import read_open_work
 from app.models import ClaimRow, MissionRow, MissionState, RobotRow, StopRow
 from app.orders.stops import stops_left
@@ -23,6 +25,8 @@ from protocol.ids import new_id
 from protocol.parts import Leg, StopAction
 
 REASON: Final = "the robot charges first"
+MOST_DOCKS: Final = 3
+"""So many docks one after the other have not helped: a fourth will not either."""
 
 log = structlog.get_logger(__name__)
 
@@ -36,12 +40,25 @@ class ChargeFirst:
     async def sends(self, session: AsyncSession, robot: RobotRow, claim: ClaimRow, legs: Sequence[Leg]) -> bool:
         """Tell if the robot goes to a dock instead: then its reservation request is answered by that."""
         charges = Charges(self.fleet.orders.ledger.ways, self.fleet.settings, self.fleet.spending.rates)
-        way = (legs[0].from_post, *(leg.to_post for leg in legs))
-        if charges.goes_on(robot, way) or not self.fleet.connections.understands(robot.name, UNTIL_RATIO):
+        if not self.fleet.connections.understands(robot.name, UNTIL_RATIO):
             return False
         mission = await _mission(session, robot.name)
-        left = await stops_left(session, mission.id) if mission is not None else ()
-        if mission is None or not await _breaks_off(session, left, claim):
+        if mission is None:
+            is_sent = await self._sends_from_the_way_home(session, robot, claim, charges)
+        else:
+            is_sent = not charges.goes_on(robot, _posts(legs)) and await self._sends_first(
+                session, robot, claim, (mission, charges)
+            )
+        if is_sent:
+            claim.granted, claim.reason = False, REASON
+        return is_sent
+
+    async def _sends_first(
+        self, session: AsyncSession, robot: RobotRow, claim: ClaimRow, its: tuple[MissionRow, Charges]
+    ) -> bool:
+        mission, charges = its
+        left = await stops_left(session, mission.id)
+        if not await _breaks_off(session, left, claim):
             return False
         work = await read_open_work(session, self.fleet.clock.utc())
         dock = charges.nearest_dock(robot, free_docks(self.fleet.campus, work, robot.name))
@@ -49,8 +66,29 @@ class ChargeFirst:
             return False  # its own battery plan has the last word
         until_ratio = max(LEAVES_DOCK, charges.needed(robot, [stop.post for stop in left]))
         await self._put_first(session, robot, mission, left, (dock, until_ratio))
-        claim.granted, claim.reason = False, REASON
         return True
+
+    async def _sends_from_the_way_home(
+        self, session: AsyncSession, robot: RobotRow, claim: ClaimRow, charges: Charges
+    ) -> bool:
+        home = self._home_of(robot)
+        if home is None or claim.goal not in (home, robot.home_bay):
+            return False
+        way = _posts(Leg.model_validate(leg) for leg in claim.legs)
+        if charges.goes_on(robot, way) or await _has_charged_in_vain(session, robot):
+            return False
+        work = await read_open_work(session, self.fleet.clock.utc())
+        dock = charges.nearest_dock(robot, free_docks(self.fleet.campus, work, robot.name))
+        if dock in (None, home) or not work.robots[robot.name].takes_work:
+            return False
+        stop = StopRow(id=new_id(), mission_id=new_id(), position=0, post=dock, action=StopAction.DOCK)
+        stop.until_ratio = max(THRESHOLDS.sufficient, charges.needed(robot, [dock, home]))
+        await send_on_errand(session, self.fleet, robot, stop)
+        log.info("charges_on_the_way_home", robot=robot.name, dock=dock, until_ratio=stop.until_ratio)
+        return True
+
+    def _home_of(self, robot: RobotRow) -> str | None:
+        return self.fleet.campus.address_of(robot.home_bay) if robot.home_bay is not None else robot.home
 
     async def _put_first(
         self,
@@ -72,6 +110,12 @@ class ChargeFirst:
         log.info("charges_first", robot=robot.name, dock=dock, until_ratio=until_ratio)
 
 
+def _posts(legs: Iterable[Leg]) -> tuple[str, ...]:
+    """From the beginning of the first one on."""
+    ways = list(legs)
+    return (ways[0].from_post, *(leg.to_post for leg in ways))
+
+
 async def _mission(session: AsyncSession, robot: str) -> MissionRow | None:
     active = select(MissionRow).where(MissionRow.robot == robot, MissionRow.state == MissionState.ACTIVE)
     missions = (await session.exec(active.with_for_update())).all()
@@ -86,3 +130,11 @@ async def _breaks_off(session: AsyncSession, left: Sequence[StopRow], claim: Cla
     over = select(StopRow).where(StopRow.mission_id == left[0].mission_id, col(StopRow.done_at).is_not(None))
     last = (await session.exec(over.order_by(col(StopRow.done_at).desc(), col(StopRow.position).desc()))).first()
     return last is None or last.action != StopAction.DOCK
+
+
+async def _has_charged_in_vain(session: AsyncSession, robot: RobotRow) -> bool:
+    """It stands where it charged last, or its last stops were docks alone."""
+    its = select(StopRow).join(MissionRow).where(MissionRow.robot == robot.name, col(StopRow.done_at).is_not(None))
+    last = (await session.exec(its.order_by(col(StopRow.done_at).desc()).limit(MOST_DOCKS))).all()
+    docks = [stop.post for stop in last if stop.action == StopAction.DOCK]
+    return len(docks) == MOST_DOCKS or bool(last and last[0].action == StopAction.DOCK and last[0].post == robot.post)

@@ -16,6 +16,7 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.charging.dock_room import driving_there, leaving, parking
+from app.charging.errands import send_on_errand
 from app.charging.free_docks import UNTIL_RATIO, docks_of, shared_docks, taken_docks
 from app.core.polling import PollingLoop
 from app.dispatch.charge_limits import THRESHOLDS, Charges
@@ -146,7 +147,7 @@ class ChargingService:
             if self._may_be_sent(work.robots[move.robot], work) and move.dock not in taken_docks(work):
                 stop = StopRow(id=new_id(), mission_id=new_id(), position=0, post=move.dock, action=StopAction.DOCK)
                 stop.until_ratio = until
-                await self._tell(session, robot, stop)
+                await send_on_errand(session, self.fleet, robot, stop)
                 log.info("sent_to_charge", robot=move.robot, dock=move.dock, until_ratio=until)
 
     async def _park(self, name: str, now: datetime) -> None:
@@ -156,22 +157,13 @@ class ChargingService:
             post = self._place_to_park(robot, work)
             if post is not None and self._may_be_sent(work.robots[name], work) and robot.docked:
                 stop = StopRow(id=new_id(), mission_id=new_id(), position=0, post=post, action=StopAction.PARK)
-                await self._tell(session, robot, stop)
+                await send_on_errand(session, self.fleet, robot, stop)
                 log.info("makes_room_in_dock", robot=name, dock=robot.post, post=post)
 
     def _place_to_park(self, robot: RobotRow, work: OpenWork) -> str | None:
         if robot.home_bay is not None:
             return self.fleet.campus.address_of(robot.home_bay)
         return parking(self.fleet.campus, work, work.robots[robot.name], self.fleet.orders.ledger.ways)
-
-    async def _tell(self, session: AsyncSession, robot: RobotRow, stop: StopRow) -> None:
-        """A mission of this one stop."""
-        mission = MissionRow(id=stop.mission_id, robot=robot.name, created_at=self.fleet.clock.utc())
-        session.add(mission)
-        await session.flush()
-        session.add(stop)
-        await session.flush()
-        await tell_mission(session, self.fleet, robot, mission)
 
     async def _call_away(self, stop: StopNow) -> None:
         """Work was given only where there is the charge for it: it does not wait for more."""

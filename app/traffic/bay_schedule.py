@@ -12,6 +12,7 @@ from app.traffic.schedule import Elsewhere, HasToWait, Leg, MayEnter, TrafficSch
 from app.traffic.snapshot import Hold, RobotLocation, TrafficSnapshot
 from app.traffic.standing import bay_ahead, lanes_of, standing
 from fleet.schedule.controller import ComeIn, Denied, GoOn, Granted, LetIn, Waits
+from fleet.schedule.journey import Goal
 from fleet.schedule.network import Lane
 from fleet.schedule.placing import Place
 
@@ -47,6 +48,19 @@ class BayTrafficSchedule(TrafficSchedule):
             self.controller.crossed(now.robot, where.post, now_s)
         if not self.controller.is_at(now.robot, where, now.home):
             self._join(now, now_s)
+
+    def _wanted(self, now: RobotLocation) -> tuple[Goal, ...]:
+        """First it moves into its own bay: until it is in, the schedule ends there. With work after that it would stay
+        in the bay where it is."""
+        goals = super()._wanted(now)
+        return goals[:1] if self._moves_next_door(now) else goals
+
+    def _moves_next_door(self, one: RobotLocation) -> bool:
+        """Tell if it moves from another bay of the same post into its own."""
+        home, here = one.home_bay, one.occupies
+        if home is None or here is None or here.kind != "bay" or home == here.place:
+            return False
+        return self.track.address_of(home) == one.post and one.goes_into(home)
 
     # What follows.
 

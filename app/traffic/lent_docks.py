@@ -35,10 +35,8 @@ def _how_near(track: CampusMap, dock: Post, one: RobotLocation) -> int | None:
 
 def _moves_next_door(track: CampusMap, dock: Post, one: RobotLocation) -> bool:
     """Tell if it goes from the dock to its own home at the same post."""
-    if one.home_bay is None or track.address_of(one.home_bay) != dock.bay_of:
-        return False
-    asks = one.request is not None and one.request.place == one.home_bay
-    return asks or any(hold.to_post == one.home_bay for hold in one.holds)
+    home = one.home_bay
+    return home is not None and track.address_of(home) == dock.bay_of and one.goes_into(home)
 
 
 def _at_home_in(dock: Post, one: RobotLocation) -> RobotLocation:

@@ -94,6 +94,11 @@ class RobotLocation:
         further = takewhile(lambda pair: pair[0] == pair[1].from_post, zip(ends, self.holds[1:], strict=False))
         return (*self.holds[:1], *(hold for _, hold in further))
 
+    def goes_into(self, bay: str) -> bool:
+        """Tell if it asks for the way into this bay, or was let in."""
+        asked = self.request.legs if self.request is not None else ()
+        return any(leg[1] == bay for leg in asked) or any(hold.to_post == bay for hold in self.holds)
+
 
 @dataclass(frozen=True)
 class TrafficSnapshot:

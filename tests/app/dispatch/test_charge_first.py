@@ -7,7 +7,7 @@ import pytest
 
 from app.charging.charge_first import REASON
 from app.core.settings import Settings
-from app.models import ClaimRow, StopRow
+from app.models import ClaimRow, MissionRow, MissionState, StopRow
 from maps import shortest_route
 from protocol.clock import SteppedClock
 from protocol.envelope import YOUNGER
@@ -126,3 +126,75 @@ async def test_a_robot_that_does_not_know_of_charging_at_a_stop_is_let_in(
         await has(older, 0.25, "post2")
         legs = await claims(older, "c1", "post2", "post1")
         assert (await older.hear("grant")).body == Grant(claim_id="c1", legs=legs)
+
+
+@pytest.fixture
+async def guest(service: Service, clock: SteppedClock) -> AsyncIterator[PlayedRobot]:
+    """At post2, with nothing to do. Its home is post1, where it cannot charge."""
+    guest = PlayedRobot(clock)
+    async with guest.connected(service.url, await service.enrol("r1")):
+        await guest.greet("post2", battery=Battery(ratio=0.9, docked=False), understands=YOUNGER, home="post1")
+        yield guest
+
+
+async def test_who_would_come_home_with_too_little_charges_on_the_way(service: Service, guest: PlayedRobot) -> None:
+    await has(guest, 0.25, "post2")
+    await claims(guest, "c1", "post2", "post1")
+    mission, dock = await sent_to_charge(guest)
+    assert (mission.stops, dock.post, dock.until_ratio) == ((dock,), "post5", 0.8)
+    (claim,) = await service.rows(ClaimRow)
+    assert (claim.granted, claim.reason) == (False, REASON)
+    legs = await claims(guest, "c2", "post2", "post5")
+    assert (await guest.hear("grant")).body == Grant(claim_id="c2", legs=legs)
+
+
+async def test_who_comes_home_with_enough_is_let_in(guest: PlayedRobot) -> None:
+    await has(guest, 0.6, "post2")
+    legs = await claims(guest, "c1", "post2", "post1")
+    assert (await guest.hear("grant")).body == Grant(claim_id="c1", legs=legs)
+
+
+async def test_who_goes_elsewhere_for_reasons_of_its_own_is_let_in(guest: PlayedRobot) -> None:
+    await has(guest, 0.25, "post2")
+    legs = await claims(guest, "c1", "post2", "post4")
+    assert (await guest.hear("grant")).body == Grant(claim_id="c1", legs=legs)
+
+
+async def test_a_robot_that_does_not_know_of_charging_at_a_stop_goes_home(
+    service: Service, clock: SteppedClock
+) -> None:
+    older = PlayedRobot(clock)
+    async with older.connected(service.url, await service.enrol("r1")):
+        await older.greet("post2", battery=Battery(ratio=0.25, docked=False), home="post1")
+        legs = await claims(older, "c1", "post2", "post1")
+        assert (await older.hear("grant")).body == Grant(claim_id="c1", legs=legs)
+
+
+async def test_a_dock_that_did_not_help_is_not_tried_again_at_once(guest: PlayedRobot) -> None:
+    await has(guest, 0.25, "post2")
+    await claims(guest, "c1", "post2", "post1")
+    mission, dock = await sent_to_charge(guest)
+    for leg in await claims(guest, "c2", "post2", "post5"):
+        await guest.say(Clear(leg=leg, post=leg.to_post))
+    await has(guest, 0.25, "post5", docked=True)
+    await guest.report(mission, Step.DONE, dock)
+    await guest.report(mission, Step.DONE)
+    await has(guest, 0.25, "post5")
+    legs = await claims(guest, "c3", "post5", "post1")
+    assert (await guest.hear("grant")).body == Grant(claim_id="c3", legs=legs)
+
+
+async def test_docks_that_do_not_help_are_not_tried_for_ever(
+    service: Service, guest: PlayedRobot, clock: SteppedClock
+) -> None:
+    """It was on three errands to docks, one after the other."""
+    async with service.app.state.parts.database.transaction() as session:
+        for number in range(3):
+            session.add(MissionRow(id=f"m{number}", robot="r1", created_at=clock.utc(), state=MissionState.DONE))
+            await session.flush()
+            stop = StopRow(id=f"s{number}", mission_id=f"m{number}", position=0, post="post5", action=StopAction.DOCK)
+            stop.done_at = clock.utc()
+            session.add(stop)
+    await has(guest, 0.25, "post2")
+    legs = await claims(guest, "c1", "post2", "post1")
+    assert (await guest.hear("grant")).body == Grant(claim_id="c1", legs=legs)

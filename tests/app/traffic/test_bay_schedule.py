@@ -67,12 +67,13 @@ def test_who_has_something_to_do_where_it_stands_keeps_no_corridor_from_others_m
 
 
 @pytest.mark.parametrize("goal", [Stop("own", "post5"), Stop("dock", "post5", charges_to=0.8)])
+@pytest.mark.parametrize("stops", [(), (Stop("next", "post4"),), (Stop("next", "post1"), Stop("last", "post4"))])
 @pytest.mark.parametrize("then", [(), ("post5", "post3", "post4", "post4_bay1")])
 def test_who_goes_home_from_another_bay_of_its_post_is_let_in(
-    settings: Settings, goal: Stop, then: tuple[str, ...]
+    settings: Settings, goal: Stop, stops: tuple[Stop, ...], then: tuple[str, ...]
 ) -> None:
-    """Also when it says where it goes after that."""
-    at_home_post = replace(GUEST, post="post5", occupies=Occupied("bay", "post5_bay1"), goals=(goal,))
+    """Also when it says where it goes after that, and has work there."""
+    at_home_post = replace(GUEST, post="post5", occupies=Occupied("bay", "post5_bay1"), goals=(goal, *stops))
     home = "post5_bay1", "post5", "post5_bay2"
     assert verdicts(settings, asks(at_home_post, "post5", *home, *then)) == [MayEnter("r1", (home[:2], home[1:]))]
 
