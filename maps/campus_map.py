@@ -209,6 +209,11 @@ class CampusMap:
         """The posts that have a charging station."""
         return tuple(post for post in self.posts.values() if post.dock)
 
+    @cached_property
+    def dock_bays(self) -> Mapping[str, str]:
+        """On a track: the bay with the dock of each post that has one."""
+        return {place.bay_of: place.name for place in self.docks() if place.bay_of}
+
 
 def corridor_name(a: str, b: str) -> str:
     return "-".join(sorted((a, b)))

@@ -165,7 +165,7 @@ class Mind:
             halting=hands.view.faults & HALTING,
             home=navigator.home,
             dockless=navigator.home is not None and navigator.campus.post(navigator.home).dock is None,
-            dock_bays=navigator.dock_places,
+            dock_bays=navigator.campus.dock_bays,
             nearest_dock=navigator.nearest_dock(),
             watch=int(now // WATCH_S),
             unsure=self.silence.lasts is True,

@@ -226,11 +226,6 @@ class Navigator(Tracker):
         spur = place.came_by if isinstance(place, AtPost) else None
         return spur is not None and self.campus.post(spur.b).bay_of is not None
 
-    @property
-    def dock_places(self) -> dict[str, str]:
-        """The bay with the dock of each post that has bays."""
-        return {place.bay_of: place.name for place in self.campus.docks() if place.bay_of}
-
     def bay_for(self, post: str) -> str:
         """The place where it stands for a post."""
         if self.at in places_to_stand(self.campus, post):
@@ -278,6 +273,11 @@ class Navigator(Tracker):
         towards = self._next_post()
         turn_rad = self._turn_to(towards) if towards else None
         return turn_rad if turn_rad is not None and abs(turn_rad) > STRAIGHT_RAD else 0.0
+
+    def lines_ahead(self, within_rad: float) -> int:
+        """Return how many lines lead away from its post within this angle of the way it looks."""
+        turns = (self._turn_to(post.name) for post, _ in self.campus.neighbours(self.here or ""))
+        return sum(turn_rad is not None and abs(turn_rad) < within_rad for turn_rad in turns)
 
     def _next_post(self) -> str | None:
         aside = self.detour

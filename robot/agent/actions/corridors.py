@@ -154,7 +154,7 @@ class AskAhead:
 
 def wait_to_cross(hands: Hands, _: Sequence[Value], __: float) -> Run:
     """Done when it may drive on: over the post, into a bay there, or where the service sends it. Denied the corridor
-    that it is in it has to turn back."""
+    that it is in it has to turn back; so has one that turned round on its way into its bay."""
     navigator, claims = hands.navigator, hands.missions.claims
     goals = [goal for goal in (navigator.destination, navigator.waits_before) if goal]
     claim_id: str | None = None
@@ -163,6 +163,8 @@ def wait_to_cross(hands: Hands, _: Sequence[Value], __: float) -> Run:
         nonlocal claim_id
         if navigator.may_cross():
             return DONE
+        if _comes_back_from_its_bay(hands):
+            return Ended("turn_back")
         denial = claims.denial(claim_id) if claim_id else None
         if denial and navigator.corridor in denial.avoid:
             return Ended("turn_back")
@@ -174,6 +176,14 @@ def wait_to_cross(hands: Hands, _: Sequence[Value], __: float) -> Run:
         return None
 
     return Wait(ask, dropped=claims.withdraw)
+
+
+def _comes_back_from_its_bay(hands: Hands) -> bool:
+    """It has turned round before it was in. That bay is kept for it, and it is let out of there."""
+    leg, campus = hands.navigator.corridor, hands.navigator.campus
+    if leg is None or leg.from_post != hands.navigator.waits_before or not campus.post(leg.to_post).bay_of:
+        return False
+    return leg in hands.missions.held.grants and not _is_closed(hands, leg)
 
 
 def release(hands: Hands, _: Sequence[Value], __: float) -> Run:

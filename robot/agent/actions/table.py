@@ -58,8 +58,8 @@ FOLLOW_LEAST_S, FOLLOW_TIMES = 180.0, 3.0
 
 
 def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
-    """Along the line; a robot that looks aslant (its turn was interrupted) straightens up first, and one that does not
-    know which way it looks turns until it sees a line."""
+    """Along the line. A robot that looks aslant straightens up first, unless it stands over the only line ahead; one
+    that does not know which way it looks turns until it sees a line."""
     navigator = hands.navigator
     if navigator.doubted:
         return AtOnce(Ended(PLACE_UNKNOWN))
@@ -68,7 +68,7 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
     aslant_rad = navigator.aslant_rad
 
     def straighten() -> Skill | None:
-        on_the_line = abs(aslant_rad) < WIDEST_RAD and over_line(hands.view)
+        on_the_line = abs(aslant_rad) < WIDEST_RAD and over_line(hands.view) and navigator.lines_ahead(WIDEST_RAD) <= 1
         if on_the_line or not (aslant_rad or navigator.looks_anywhere):
             return None
         if not aslant_rad:

@@ -177,6 +177,28 @@ def test_refused_the_corridor_that_it_is_in_it_turns_back(bay_bench: BayBench) -
     assert [failure for _, failure in bay_bench.actions.finished(0.0)] == ["turn_back"]
 
 
+def turned_round_on_its_way_into_a_bay(bay_bench: BayBench) -> None:
+    in_corridor(bay_bench, "post3", "post3_bay1")
+    answered(bay_bench, Grant(claim_id="c1", legs=(leg("post3", "post3_bay1"),)))
+    bay_bench.navigator.turned()
+    bay_bench.navigator.destination = "post4"
+
+
+def test_one_that_turned_round_on_its_way_into_its_bay_goes_in(bay_bench: BayBench) -> None:
+    """From there it is let out: on the crossing nothing but that bay is open to it."""
+    turned_round_on_its_way_into_a_bay(bay_bench)
+    bay_bench.ask("wait_to_cross")
+    assert [failure for _, failure in bay_bench.actions.finished(0.0)] == ["turn_back"]
+
+
+def test_one_that_turned_round_before_something_in_its_bay_asks_for_another(bay_bench: BayBench) -> None:
+    turned_round_on_its_way_into_a_bay(bay_bench)
+    bay_bench.ask("mark_blocked(blocked)")
+    bay_bench.ask("wait_to_cross")
+    assert [failure for _, failure in bay_bench.actions.finished(0.0)] == [None]
+    assert claims(bay_bench) != []
+
+
 def test_sent_elsewhere_out_of_a_bay_it_goes_where_the_last_leg_leads(bay_bench: BayBench) -> None:
     bay_bench.navigator.place("post3_bay1", "post3")
     bay_bench.ask("claim(post4)")
