@@ -59,7 +59,7 @@ def _whereof(calm: bool, seed: int) -> dict[str, Any]:
         "code": commit(),
         "command": " ".join(["python -m benchmarks.fleet simulate", *sys.argv[2:]]),
         "seed": seed,
-        "durations": "placeholders",
+        "durations": "moves fitted to stepped robots, people assumed",
         "python": platform.python_version(),
     }
 

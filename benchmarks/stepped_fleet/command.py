@@ -23,6 +23,7 @@ def stepped(
     minutes: Annotated[float, typer.Option(min=0.1, help="Simulated.")] = 30.0,
     seed: Annotated[int, typer.Option(help="Of the same seed everything is the same.")] = 1,
     campus: Annotated[str, typer.Option(help="A map with bays: a built-in one, or a file.")] = "carleton",
+    waiting: Annotated[int, typer.Option(min=0, help="Orders that always wait; 0: robots and two.")] = 0,
     scale: Annotated[float, typer.Option(min=0.01, help="Of its corridors.")] = 0.1,
     kill_every_s: Annotated[float, typer.Option(min=0.0, help="Each robot, on an average; 0: never.")] = 0.0,
     cut_every_s: Annotated[float, typer.Option(min=0.0, help="Its network, the same.")] = 0.0,
@@ -31,7 +32,7 @@ def stepped(
     """Run whole robots with the whole service; ends with 1 if bodies touched or a corridor was entered ungranted."""
     begin_with_like_hashes()
     simulates_only()
-    fleet = Fleet(campus, robots, scale, robots + 2, kill_every_s, cut_every_s, turns_killed)
+    fleet = Fleet(campus, robots, scale, waiting or robots + 2, kill_every_s, cut_every_s, turns_killed)
     figures = Run(fleet, minutes, seed).carry_out()
     command = " ".join(["python -m benchmarks.fleet stepped", *sys.argv[2:]])
     print(json.dumps({"mode": "stepped", "code": commit(), "command": command, "figures": figures}, indent=2))

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from sqlmodel import col, select
 
-from app.models import Alarm, GrantRow
+from app.models import Alarm, GrantRow, OccupancyRow
 from benchmarks.fleet_simulation.demand import Saturated
 from benchmarks.fleet_simulation.durations import FITTED, Taking
 from benchmarks.fleet_simulation.loop import LoopClock, SimulatedLoop
@@ -21,6 +21,7 @@ from benchmarks.fleet_simulation.people import People
 from benchmarks.fleet_simulation.service import MEMORY, SHIPPED, PlansInRounds, Service
 from benchmarks.stepped_fleet.bystanders import Bystanders
 from benchmarks.stepped_fleet.judge import TrueFloor
+from benchmarks.stepped_fleet.paces import Paces
 from benchmarks.stepped_fleet.robots import SteppedRobot
 from benchmarks.stepped_fleet.silence import keep_silent
 from maps import CampusMap, read_map
@@ -82,15 +83,16 @@ class Run:
         service = await Service.begin(folder / "service", str(path), clock, planning, SHIPPED, traffic="schedule")
         people = People(service.parts, Taking(campus, FITTED, self.seed), Random(f"{self.seed} people"))
         await people.begin()
-        world, floor = World(campus, seed=self.seed), TrueFloor(campus.track)
+        world, floor, paces = World(campus, seed=self.seed), TrueFloor(campus.track), Paces(campus.track)
         await self._put_down(campus, world, folder, clock, service)
         bystanders = Bystanders(people, campus.track, Random(f"{self.seed} bystanders"))
         ordering = Saturated(self.fleet.waiting).run(people, sorted(campus.posts), Random(f"{self.seed} orders"))
         fates = [fate(one) for one in self.robots for fate in (self._befalls, self._dies_turning)]
         silences = [keep_silent(one, campus.track, self.befallen) for one in self.robots]
         tasks = [asyncio.create_task(one) for one in (ordering, *fates, *silences)]
-        await self._step(clock, service, floor, bystanders, tasks)
+        await self._step(clock, service, (floor, paces), bystanders, tasks)
         found = await self._figures(service, people, floor, bystanders, process_time() - begun_s)
+        found["takes"] = paces.figures()
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
@@ -119,10 +121,11 @@ class Run:
         self,
         clock: LoopClock,
         service: Service,
-        floor: TrueFloor,
+        judges: tuple[TrueFloor, Paces],
         bystanders: Bystanders,
         tasks: list[asyncio.Task[None]],
     ) -> None:
+        floor, paces = judges
         steps = round(self.minutes * 60 / STEP_S)
         for step in range(steps):
             await asyncio.sleep(STEP_S)
@@ -131,6 +134,7 @@ class Run:
             if step % LOOK_EVERY == 0:
                 poses = {one.name: one.body.body.true_pose for one in self.robots}
                 floor.look(poses)
+                paces.look(poses)
             if step % 50 == 0:
                 service.check()
                 for task in tasks:
@@ -138,6 +142,7 @@ class Run:
                         task.result()
                 await bystanders.tick(self.robots, clock.now())
                 floor.look_at_grants(poses, await _granted(service))
+                paces.hear(await _occupied(service))
 
     async def _befalls(self, one: SteppedRobot) -> None:
         rng = Random(f"{self.seed} {one.name} fate")
@@ -213,3 +218,8 @@ async def _granted(service: Service) -> dict[str, set[str]]:
     for row in held:
         granted.setdefault(row.robot, set()).add(row.corridor)
     return granted
+
+
+async def _occupied(service: Service) -> dict[str, str]:
+    async with service.parts.database.reading() as session:
+        return {row.robot: row.kind for row in (await session.exec(select(OccupancyRow))).all()}

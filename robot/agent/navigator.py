@@ -276,7 +276,7 @@ class Navigator(Tracker):
 
     def lines_ahead(self, within_rad: float) -> int:
         """Return how many lines lead away from its post within this angle of the way it looks."""
-        turns = (self._turn_to(post.name) for post, _ in self.campus.neighbours(self.here or ""))
+        turns = [self._turn_to(post.name) for post, _ in (self.campus.neighbours(self.here) if self.here else ())]
         return sum(turn_rad is not None and abs(turn_rad) < within_rad for turn_rad in turns)
 
     def _next_post(self) -> str | None:
