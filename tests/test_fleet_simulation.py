@@ -3,6 +3,7 @@
 import asyncio
 import logging
 from collections.abc import Coroutine, Iterator
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -58,8 +59,8 @@ def test_the_same_seed_is_the_same_life_whatever_befalls_robots() -> None:
 def test_robots_that_are_let_in_whoever_is_inside_are_seen_to_meet() -> None:
     """With all corridors granted at once; by the schedule they do not."""
     ground = Ground("test_track", docks=3)
-    unkept = lived(Fleet(robots=3, ground=ground, traffic="at_once", pace=CALM), hours=0.2, seed=1)
-    kept = lived(Fleet(robots=3, ground=ground, pace=CALM), hours=0.2, seed=1)
+    unkept = lived(Fleet(robots=3, ground=ground, traffic="at_once", pace=CALM), hours=0.5, seed=1)
+    kept = lived(Fleet(robots=3, ground=ground, pace=CALM), hours=0.5, seed=1)
     assert unkept["met"]["corridor"] > 0
     assert any("in corridor post" in one for one in unkept["meetings"])
     assert kept["arrivals"] > 0
@@ -172,7 +173,7 @@ def test_ways_have_paces_of_their_own_and_the_ground_as_many_docks_as_asked(tmp_
     campus = Ground(docks=7).read(tmp_path)
     assert [home.dock is not None for home in campus.track.home_bays] == [True] * 7 + [False]
     assert Ground().read(tmp_path).version == TUNNELS.version
-    taking = Taking(TUNNELS, FITTED, seed=1)
+    taking = Taking(TUNNELS, replace(FITTED, each_way=(1.06, 1.73), each_time=0.2), seed=1)
     there_s, back_s = ([taking.drive_s(leg, Random(n)) for n in range(50)] for leg in (THERE, BACK))
     assert max(there_s) / min(there_s) < 1.5 < (max(back_s) / min(back_s)) * 1.2
     assert sum(there_s) != pytest.approx(sum(back_s), rel=0.01)
