@@ -20,13 +20,16 @@ def driving_there(needs: Iterable[Need]) -> dict[str, str]:
     return {need.robot: min(need.ways, key=lambda dock: (need.ways[dock].way_m, dock)) for need in low}
 
 
-def leaving(moves: Iterable[Move], needs: Mapping[str, Need], resting: Mapping[str, str]) -> Iterator[str]:
-    """Robots that leave their docks. `moves`: to docks that are taken; `resting`: who may be asked to, by dock."""
+def leaving(
+    moves: Iterable[Move], needs: Mapping[str, Need], resting: Mapping[str, str], awaited: Iterable[str]
+) -> Iterator[str]:
+    """Robots that leave their docks. `moves`: to docks that are taken; `resting`: who may be asked to, by dock;
+    `awaited`: see `driving_there`."""
     for move in moves:
         other = resting.get(move.dock)
         if other is not None and makes_room(needs[other], needs[move.robot], THRESHOLDS):
             yield other
-    for dock in driving_there(needs.values()).values():
+    for dock in awaited:
         other = resting.get(dock)
         if other is not None and needs[other].charge.ratio >= LEAVES_DOCK:
             yield other

@@ -19,9 +19,9 @@ from app.charging.dock_room import driving_there, leaving, parking
 from app.charging.errands import send_on_errand
 from app.charging.free_docks import UNTIL_RATIO, docks_of, shared_docks, taken_docks
 from app.core.polling import PollingLoop
-from app.dispatch.charge_limits import THRESHOLDS, Charges
+from app.dispatch.charge_limits import LEAVES_DOCK, THRESHOLDS, Charges
 from app.dispatch.open_work import OpenWork, RobotNow, StopNow, read_open_work
-from app.models import MissionRow, Order, RobotRow, StopRow
+from app.models import MissionRow, MissionState, Order, RobotRow, StopRow
 from app.robots.energy_use import usual_rates
 from app.robots.mission_updates import tell_mission
 from app.robots.service import Fleet, known_robot
@@ -74,6 +74,8 @@ class ChargingService:
             work = await read_open_work(session, now)
         for stop in self._in_the_way(work):
             await self._call_away(stop)
+        for stop in self._awaited(work):
+            await self._let_leave_sooner(stop)
         moves, leave = self._moves(work, now)
         for move in moves:
             await self._send(move, now)
@@ -102,15 +104,22 @@ class ChargingService:
         docks = shared_docks(self.fleet.campus, work)
         needs = {robot.name: self._need(robot, work, docks) for robot in work.robots.values() if _needs_one(robot)}
         resting = [need for name, need in needs.items() if self._may_be_sent(work.robots[name], work)]
+        low = self._driving_to_docks(work)
         plan = plan_docks(list(needs.values()), docks, ASSUMED, THRESHOLDS, self.fleet.clock.now())
         here = self._local(now)
         policy = TopUpPolicy(self._demand.is_quiet(here), round(self._demand.expected(here)))
         in_docks = {need.dock: need.robot for need in resting if need.dock is not None}
-        awaited = {dock for name, dock in driving_there(needs.values()).items() if needs[name] not in resting}
+        awaited = {dock for name, dock in low.items() if needs.get(name) not in resting}
         taken = {dock: in_docks.get(dock) for dock in (*taken_docks(work), *awaited)}
         found = top_ups(resting, plan, taken, THRESHOLDS, policy, self.fleet.clock.now())
-        leave = leaving([move for move in found if move.dock in taken], needs, in_docks)
+        leave = leaving([move for move in found if move.dock in taken], needs, in_docks, low.values())
         return [move for move in found if move.dock not in taken], set(leave)
+
+    def _driving_to_docks(self, work: OpenWork) -> dict[str, str]:
+        """Where robots go whose own battery plan has taken over, those with a home in a dock included."""
+        docks, own = shared_docks(self.fleet.campus, work), {post.name for post in self.fleet.campus.docks()}
+        there = (one for one in work.robots.values() if one.is_there and one.post and one.battery_ratio is not None)
+        return driving_there(self._need(one, work, [*docks, *(own & {one.home})]) for one in there)
 
     def _local(self, moment: datetime) -> datetime:
         """Hours of the week are those of the people who send mail."""
@@ -136,6 +145,14 @@ class ChargingService:
             posts, robot = [stop.post for stop in stops if stop.order_id], work.robots[name]
             if posts and (robot.battery_ratio or 0.0) >= charges.needed(robot, posts):
                 yield from (stop for stop in stops if stop.order_id is None)
+
+    def _awaited(self, work: OpenWork) -> Iterator[StopNow]:
+        """Charges in docks to which a robot drives that has hardly anything left, occupied or not."""
+        docks = set(self._driving_to_docks(work).values())
+        for name, stops in work.stops.items():
+            robot = work.robots[name]
+            if robot.docked and robot.post in docks:
+                yield from (stop for stop in stops[:1] if stop.action == StopAction.DOCK and stop.post == robot.post)
 
     # How it is written.
 
@@ -164,6 +181,21 @@ class ChargingService:
         if robot.home_bay is not None:
             return self.fleet.campus.address_of(robot.home_bay)
         return parking(self.fleet.campus, work, work.robots[robot.name], self.fleet.orders.ledger.ways)
+
+    async def _let_leave_sooner(self, stop: StopNow) -> None:
+        """With half a charge it can come again later."""
+        async with self.fleet.database.transaction() as session:
+            robot = await known_robot(session, stop.robot, to_change=True)
+            row = await session.get_one(StopRow, stop.id, with_for_update=True)
+            mission = await session.get_one(MissionRow, stop.mission_id, with_for_update=True)
+            is_over = row.done_at is not None or row.dropped_at is not None or mission.state != MissionState.ACTIVE
+            if is_over or row.until_ratio is None or row.until_ratio <= LEAVES_DOCK:
+                return
+            row.until_ratio = LEAVES_DOCK
+            mission.update_number += 1
+            await session.flush()
+            await tell_mission(session, self.fleet, robot, mission)
+            log.info("leaves_dock_sooner", robot=stop.robot, dock=stop.post)
 
     async def _call_away(self, stop: StopNow) -> None:
         """Work was given only where there is the charge for it: it does not wait for more."""

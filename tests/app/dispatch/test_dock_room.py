@@ -6,10 +6,10 @@ from contextlib import asynccontextmanager
 import pytest
 
 from app.core.settings import Settings
-from app.models import MissionRow, StopRow
+from app.models import MissionRow, RobotRow, StopRow
 from protocol.clock import SteppedClock
 from protocol.envelope import YOUNGER
-from protocol.parts import Activity, Battery, StopAction
+from protocol.parts import Activity, Battery, Stop, StopAction
 from protocol.to_server import Snapshot, Step
 from tests.app.robots.playing import PlayedRobot, Service, at_post, serving, until
 
@@ -96,3 +96,43 @@ async def test_who_is_to_park_and_gets_work_does_the_work(service: Service, cloc
         while any(stop.action is StopAction.PARK for stop in told.stops):
             told = await rests.mission()
         assert [stop.action for stop in told.stops] == [StopAction.LOAD, StopAction.RECEIVE]
+
+
+async def sent_to_charge(service: Service, one: PlayedRobot) -> Stop:
+    """To the dock where it stands with hardly anything."""
+    await look(service)
+    (dock,) = (await one.mission()).stops
+    assert (dock.action, dock.until_ratio) == (StopAction.DOCK, 0.8)
+    return dock
+
+
+async def comes_into_dock(service: Service, one: PlayedRobot) -> None:
+    battery = Battery(ratio=0.45, docked=True, charging=True)
+    await one.say(Snapshot(position=at_post(DOCK), activity=Activity.CHARGING, battery=battery))
+    await until(lambda: service.rows(RobotRow, name=one.name, docked=True))
+
+
+async def test_who_charges_leaves_with_half_a_charge_for_one_with_hardly_anything(
+    service: Service, clock: SteppedClock
+) -> None:
+    """Also to one that has a dock of its own, which is farther."""
+    async with robot(service, clock, "r1", "post4", 0.4) as charges:
+        dock = await sent_to_charge(service, charges)
+        await comes_into_dock(service, charges)
+        low = PlayedRobot(clock, "r2")
+        async with low.connected(service.url, await service.enrol("r2")):
+            await low.greet("post3", battery=Battery(ratio=0.2), understands=YOUNGER, home="post1")
+            await look(service)
+            (told,) = (await charges.mission()).stops
+            assert (told.id, told.until_ratio) == (dock.id, 0.53)
+            await look(service)
+            assert len(await service.rows(MissionRow)) == 1
+
+
+async def test_who_charges_stays_where_no_other_needs_its_dock(service: Service, clock: SteppedClock) -> None:
+    async with robot(service, clock, "r1", "post4", 0.4) as charges, robot(service, clock, "r2", "post3", 0.5):
+        dock = await sent_to_charge(service, charges)
+        await comes_into_dock(service, charges)
+        await look(service)
+        (row,) = await service.rows(StopRow, id=dock.id)
+        assert row.until_ratio == 0.8
