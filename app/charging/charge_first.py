@@ -61,7 +61,7 @@ class ChargeFirst:
         if not await _breaks_off(session, left, claim):
             return False
         work = await read_open_work(session, self.fleet.clock.utc())
-        dock = charges.nearest_dock(robot, free_docks(self.fleet.campus, work, robot.name))
+        dock = charges.nearest_dock(robot, free_docks(self.fleet.orders.ledger.ways, work, robot.name))
         if dock is None:
             return False  # its own battery plan has the last word
         until_ratio = max(LEAVES_DOCK, charges.needed(robot, [stop.post for stop in left]))
@@ -78,7 +78,7 @@ class ChargeFirst:
         if charges.goes_on(robot, way) or await _has_charged_in_vain(session, robot):
             return False
         work = await read_open_work(session, self.fleet.clock.utc())
-        dock = charges.nearest_dock(robot, free_docks(self.fleet.campus, work, robot.name))
+        dock = charges.nearest_dock(robot, free_docks(self.fleet.orders.ledger.ways, work, robot.name))
         if dock in (None, home) or not work.robots[robot.name].takes_work:
             return False
         stop = StopRow(id=new_id(), mission_id=new_id(), position=0, post=dock, action=StopAction.DOCK)

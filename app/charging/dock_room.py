@@ -14,17 +14,11 @@ from maps import CampusMap
 from maps.ways import Ways
 
 
-def driving_there(needs: Iterable[Need]) -> dict[str, str]:
-    """The dock that each robot comes to whose own battery plan has taken over: the nearest, occupied or not."""
-    low = (need for need in needs if need.dock is None and need.charge.ratio < THRESHOLDS.low and need.ways)
-    return {need.robot: min(need.ways, key=lambda dock: (need.ways[dock].way_m, dock)) for need in low}
-
-
 def leaving(
     moves: Iterable[Move], needs: Mapping[str, Need], resting: Mapping[str, str], awaited: Iterable[str]
 ) -> Iterator[str]:
     """Robots that leave their docks. `moves`: to docks that are taken; `resting`: who may be asked to, by dock;
-    `awaited`: see `driving_there`."""
+    `awaited`: see `free_docks.driving_there`."""
     for move in moves:
         other = resting.get(move.dock)
         if other is not None and makes_room(needs[other], needs[move.robot], THRESHOLDS):

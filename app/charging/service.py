@@ -15,9 +15,9 @@ import structlog
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.charging.dock_room import driving_there, leaving, parking
+from app.charging.dock_room import leaving, parking
 from app.charging.errands import send_on_errand
-from app.charging.free_docks import UNTIL_RATIO, docks_of, shared_docks, taken_docks
+from app.charging.free_docks import UNTIL_RATIO, docks_of, driving_there, shared_docks, taken_docks
 from app.core.polling import PollingLoop
 from app.dispatch.charge_limits import LEAVES_DOCK, THRESHOLDS, Charges
 from app.dispatch.open_work import OpenWork, RobotNow, StopNow, read_open_work
@@ -101,10 +101,10 @@ class ChargingService:
 
     def _moves(self, work: OpenWork, now: datetime) -> tuple[list[Move], set[str]]:
         """To docks that are free; and who leaves one."""
-        docks = shared_docks(self.fleet.campus, work)
+        docks = shared_docks(self.fleet.orders.ledger.ways, work)
         needs = {robot.name: self._need(robot, work, docks) for robot in work.robots.values() if _needs_one(robot)}
         resting = [need for name, need in needs.items() if self._may_be_sent(work.robots[name], work)]
-        low = self._driving_to_docks(work)
+        low = driving_there(self.fleet.orders.ledger.ways, work)
         plan = plan_docks(list(needs.values()), docks, ASSUMED, THRESHOLDS, self.fleet.clock.now())
         here = self._local(now)
         policy = TopUpPolicy(self._demand.is_quiet(here), round(self._demand.expected(here)))
@@ -114,12 +114,6 @@ class ChargingService:
         found = top_ups(resting, plan, taken, THRESHOLDS, policy, self.fleet.clock.now())
         leave = leaving([move for move in found if move.dock in taken], needs, in_docks, low.values())
         return [move for move in found if move.dock not in taken], set(leave)
-
-    def _driving_to_docks(self, work: OpenWork) -> dict[str, str]:
-        """Where robots go whose own battery plan has taken over, those with a home in a dock included."""
-        docks, own = shared_docks(self.fleet.campus, work), {post.name for post in self.fleet.campus.docks()}
-        there = (one for one in work.robots.values() if one.is_there and one.post and one.battery_ratio is not None)
-        return driving_there(self._need(one, work, [*docks, *(own & {one.home})]) for one in there)
 
     def _local(self, moment: datetime) -> datetime:
         """Hours of the week are those of the people who send mail."""
@@ -148,7 +142,7 @@ class ChargingService:
 
     def _awaited(self, work: OpenWork) -> Iterator[StopNow]:
         """Charges in docks to which a robot drives that has hardly anything left, occupied or not."""
-        docks = set(self._driving_to_docks(work).values())
+        docks = set(driving_there(self.fleet.orders.ledger.ways, work).values())
         for name, stops in work.stops.items():
             robot = work.robots[name]
             if robot.docked and robot.post in docks:

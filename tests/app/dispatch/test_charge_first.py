@@ -154,6 +154,17 @@ async def test_who_comes_home_with_enough_is_let_in(guest: PlayedRobot) -> None:
     assert (await guest.hear("grant")).body == Grant(claim_id="c1", legs=legs)
 
 
+async def test_a_dock_to_which_one_with_hardly_anything_drives_is_left_to_it(
+    service: Service, guest: PlayedRobot, clock: SteppedClock
+) -> None:
+    low = PlayedRobot(clock, "r2")
+    async with low.connected(service.url, await service.enrol("r2")):
+        await low.greet("post3", battery=Battery(ratio=0.2, docked=False), home="post4")
+        await has(guest, 0.25, "post2")
+        legs = await claims(guest, "c1", "post2", "post1")
+        assert (await guest.hear("grant")).body == Grant(claim_id="c1", legs=legs)
+
+
 async def test_who_goes_elsewhere_for_reasons_of_its_own_is_let_in(guest: PlayedRobot) -> None:
     await has(guest, 0.25, "post2")
     legs = await claims(guest, "c1", "post2", "post4")
