@@ -7,7 +7,7 @@ robots to where they rest stays what the schedule is sure of.
 from collections.abc import Mapping
 from dataclasses import replace
 
-from app.traffic.snapshot import RobotLocation
+from app.traffic.snapshot import OF_ITS_OWN, RobotLocation
 from maps import CampusMap, Post
 
 
@@ -26,7 +26,8 @@ def _how_near(track: CampusMap, dock: Post, one: RobotLocation) -> int | None:
     """It is in it or was let in (0), is sent there (1), is on its way there (2) or asks for one (3)."""
     if _is_inside(dock, one) or any(hold.to_post == dock.name for hold in one.holds):
         return None if _moves_next_door(track, dock, one) else 0
-    if one.goals and one.goals[0].charges_to is not None and one.goals[0].post == dock.bay_of:
+    its = one.goals[0] if one.goals else None
+    if its is not None and its.key != OF_ITS_OWN and its.charges_to is not None and its.post == dock.bay_of:
         return 1
     if any(hold.goal == dock.name for hold in one.holds):
         return 2

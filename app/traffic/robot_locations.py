@@ -81,7 +81,7 @@ def _robot_location(
         at_home=docked and post == home if occupies is None else occupies.place == row.home_bay,
         online=row.online,
         holds=holds,
-        goals=_with_its_own(row, request, goals),
+        goals=_with_its_own(campus, row, request, goals),
         request=request,
         stopped=row.activity == Activity.STOPPED,
         heard_at=row.heard_at,
@@ -91,14 +91,18 @@ def _robot_location(
     )
 
 
-def _with_its_own(row: RobotRow, request: ReservationRequest | None, goals: tuple[Stop, ...]) -> tuple[Stop, ...]:
-    """Put first what it goes to now, whatever its mission says: the robot knows best when it has to charge."""
+def _with_its_own(
+    campus: CampusMap, row: RobotRow, request: ReservationRequest | None, goals: tuple[Stop, ...]
+) -> tuple[Stop, ...]:
+    """Put first what it goes to now, whatever its mission says: the robot knows best when it has to charge, and what it
+    does in a dock."""
     if request is None:
         charges = row.activity == Activity.CHARGING and goals and goals[0].charges_to is None
         return (Stop(OF_ITS_OWN, row.post or "", FULL), *goals) if charges else goals
     if request.is_for_later or (goals and goals[0].post == request.goal):
         return goals
-    return (Stop(OF_ITS_OWN, request.goal), *goals)
+    place = campus.track.posts.get(request.place)
+    return (Stop(OF_ITS_OWN, request.goal, FULL if place is not None and place.dock else None), *goals)
 
 
 async def _holds(session: AsyncSession) -> dict[str, list[Hold]]:

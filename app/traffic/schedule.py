@@ -4,7 +4,7 @@ In memory, and made anew from one look at the database whenever there is none: a
 anything went wrong.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from random import Random
@@ -24,6 +24,8 @@ from maps import CampusMap, CampusMapError, Corridor, Post, corridor_name, short
 
 log = structlog.get_logger(__name__)
 ASSUMED_CROSSING_S: Final = 15.0
+CHARGES_S: Final = 1800.0
+"""Less than a charge takes, and more than a hand-over."""
 """From a bay or a corridor over the crossing until the robot is wholly in what follows: what robots took in the
 simulated world with spurs of a metre, and a little more."""
 Leg = tuple[str, str]
@@ -162,7 +164,7 @@ class TrafficSchedule:
         for goal in self.controller.goals(now.robot):
             if goal.key not in left:
                 self.controller.served(now.robot, goal.key, now_s)
-        known = _places(self.controller.goals(now.robot)) == _places(goals)
+        known = _are_known(self.controller.goals(now.robot), goals)
         if not known and not self.controller.give(now.robot, goals, now_s):
             log.warning("no_schedule", robot=now.robot, goals=_places(goals))
 
@@ -260,6 +262,12 @@ class TrafficSchedule:
         noted = replace(one, request=None, at_home=False, holds=holds)
         self._known[one.robot] = noted
         self._close_and_open(self._closed | _spare(noted), now_s)
+
+
+def _are_known(known: Sequence[Goal], goals: Sequence[Goal]) -> bool:
+    """The same, and they take about as long: a stop may turn out to be a charge, and what is charged is not to come."""
+    takes = zip(known, goals, strict=False)
+    return _places(known) == _places(goals) and all(abs(a.handling_s - b.handling_s) < CHARGES_S for a, b in takes)
 
 
 def _places(goals: Iterable[Goal]) -> list[tuple[str, int]]:

@@ -91,6 +91,28 @@ async def test_a_robot_whose_own_battery_plan_asks_for_the_dock_is_let_in_where_
         assert first.place == HOMES_WITHOUT_A_DOCK[0]
 
 
+async def test_a_robot_that_waits_for_the_dock_with_work_after_that_lets_the_other_out(
+    service: Service, clock: SteppedClock
+) -> None:
+    """Its work leads the same way. It charges before that, which takes hours."""
+    first, second = travellers(clock, Floor(), HOMES_WITHOUT_A_DOCK)
+    async with AsyncExitStack() as stack:
+        await stack.enter_async_context(second.greeted(service))
+        await tells(service, second, 0.9, docked=False)
+        await service.order("post1", "post3")
+        await second.robot.mission()
+        await stack.enter_async_context(first.greeted(service))
+        await first.go_to(DOCK)
+        await second.go_to("post2")
+        await tells(service, second, 0.2, docked=False)
+        with pytest.raises(TimeoutError):
+            async with asyncio.timeout(2.0):
+                await second.go_to(DOCK)
+        async with asyncio.timeout(20.0):
+            await first.go_to(first.home)
+        assert (first.place, second.place) == (HOMES_WITHOUT_A_DOCK[0], "post2_bay1")
+
+
 async def test_a_robot_in_a_lent_dock_that_is_switched_off_is_not_missed(service: Service, clock: SteppedClock) -> None:
     (one,) = travellers(clock, Floor(), HOMES_WITHOUT_A_DOCK[:1])
     async with one.greeted(service):
