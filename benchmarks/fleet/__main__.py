@@ -1,7 +1,8 @@
 """Measure the fleet in an event simulation, with the product's own code for traffic.
 
-`simulate` as the first word: one run of the product's whole service (`benchmarks.fleet_simulation`); `stepped`: one of
-whole robots with it, body by body (`benchmarks.stepped_fleet`).
+`simulate` as the first word: one run of the product's whole service (`benchmarks.fleet_simulation`); `shares`: what
+fleets of it deliver beside robots that are alone; `stepped`: one of whole robots, body by body
+(`benchmarks.stepped_fleet`).
 """
 
 import json
@@ -77,7 +78,11 @@ def _report(name: str, samples: Samples) -> dict[str, Any]:
         return {"figures": {}, "wanted": [], "failed": f"{type(error).__name__}: {error}"}
 
 
-RUNS = {"simulate": "benchmarks.fleet_simulation.command", "stepped": "benchmarks.stepped_fleet.command"}
+RUNS = {
+    "simulate": "benchmarks.fleet_simulation.command",
+    "shares": "benchmarks.fleet_simulation.shares",
+    "stepped": "benchmarks.stepped_fleet.command",
+}
 
 if __name__ == "__main__":
     if (run := sys.argv[1:2]) and run[0] in RUNS:
