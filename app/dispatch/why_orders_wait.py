@@ -4,7 +4,7 @@ arrive, from the same decision."""
 from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
-from app.dispatch.choice import BUSY, NONE_CONNECTED
+from app.dispatch.choice import BUSY, FETCHER_BUSY, NONE_CONNECTED
 from app.dispatch.held_up import why_held_up
 from app.dispatch.open_work import OpenWork
 from fleet.assignment.comes_next import given_at_s
@@ -17,7 +17,7 @@ MANY_AHEAD: Final = "Every robot is busy, and many orders are ahead of this one.
 MOST_COUNTED: Final = 5
 """A longer queue is not counted: it changes with every order that is fetched."""
 NOT_PLANNED_FOR: Final = "No robot can be planned for at the moment."
-TAKES_ITS_TURN: Final = frozenset({"next", "turn", "overdue"})
+TAKES_ITS_TURN: Final = frozenset({"next", "turn", "sooner", "overdue"})
 """Codes of orders that wait for nothing but their turn: a time can be told of these."""
 
 
@@ -56,6 +56,8 @@ def _said(work: OpenWork, why: Why | None) -> tuple[str, bool]:
         return BUSY, True  # each has just something to do in which it must not be disturbed
     if why.code == "turn":
         return _ahead(why.before), True
+    if why.code == "sooner":
+        return FETCHER_BUSY, True
     said = BUSY if why.code in ("next", "fetched", "fetched_after") else why.sentence(lambda at_s: f"{at_s:.0f} s")
     return said, why.code in TAKES_ITS_TURN
 

@@ -1,4 +1,4 @@
-"""A first decision, at once: every order that there is room for has a robot, and the schedule serves them all."""
+"""A first decision, at once: each robot with room has what it is to do next, and the schedule serves it all."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -7,9 +7,9 @@ from math import inf
 from random import Random
 
 from fleet.assignment.candidates import candidates, waiting_orders
-from fleet.assignment.cost import plan_cost_s
+from fleet.assignment.horizon import Outlook, look_ahead
+from fleet.assignment.overdue import give_overdue
 from fleet.assignment.problem import AssignmentProblem, RobotAtWork, Route, Routes
-from fleet.assignment.regret import Choice, choices_left, give_orders, give_overdue
 from fleet.assignment.routes import movable
 from fleet.assignment.timing import Timed, time_first
 
@@ -18,14 +18,15 @@ from fleet.assignment.timing import Timed, time_first
 class Decision:
     """An assignment for all robots, in the `problem` without what is no longer right in it.
 
-    `choices`: why orders that are new to their robots went to them. `cut_off`: stops that no way leads to, by robot;
-    they are in no route and in no schedule.
+    `looked_at`: the orders that it was about, beside those that robots had. `cut_off`: stops that no way leads to, by
+    robot; they are in no route and in no schedule.
     """
 
     problem: AssignmentProblem
     timed: Timed
+    outlook: Outlook
     cost_s: float
-    choices: tuple[Choice, ...] = ()
+    looked_at: tuple[str, ...] = ()
     cut_off: Mapping[str, Route] = field(default_factory=dict)
 
     @property
@@ -45,15 +46,15 @@ def decide(problem: AssignmentProblem, rng: Random | None = None) -> Decision | 
     before = {name: robot.route for name, robot in tidy.robots.items()}
     waiting = waiting_orders(tidy, before)
     first = give_overdue(tidy, before, [order for order in waiting if tidy.is_overdue(order.id)])
-    left = waiting_orders(tidy, first.routes) if first.choices else waiting
-    given = give_orders(tidy, first.routes, candidates(tidy, first.routes, left))
-    timed = time_first(tidy, given.routes, rng or Random(0))
+    left = waiting if first == before else waiting_orders(tidy, first)
+    looked_at = candidates(tidy, first, left)
+    outlook = look_ahead(tidy, first, looked_at)
+    timed = time_first(tidy, outlook.routes, rng or Random(0))
     if timed is None:
         return None
-    choices = choices_left((*first.choices, *given.choices), timed.routes)
-    cost_s = plan_cost_s(tidy, timed.routes, timed.tasks, timed.schedule)
+    cost_s = outlook.cost_of(timed.schedule)
     cut_off = {name: cut for name, robot in problem.robots.items() if (cut := _cut_off(problem, name, robot))}
-    return Decision(tidy, timed, cost_s, choices, cut_off)
+    return Decision(tidy, timed, outlook, cost_s, tuple(order.id for order in looked_at), cut_off)
 
 
 def tidied(problem: AssignmentProblem) -> AssignmentProblem:

@@ -1,5 +1,5 @@
 """Better decisions, while there is time: other orders for other robots, each tried with the robots favoured in several
-orders, and judged by what the schedule costs everybody.
+orders, and judged by the same outlook and by what the schedule costs everybody.
 
 Only what has not begun is moved. What is overdue is never given later than it was to be.
 """
@@ -10,11 +10,9 @@ from dataclasses import replace
 from random import Random
 from typing import Final
 
-from fleet.assignment.candidates import candidates, waiting_orders
-from fleet.assignment.cost import at_work, beside_s, plan_cost_s
 from fleet.assignment.deciding import Decision
+from fleet.assignment.horizon import Outlook, look_ahead
 from fleet.assignment.problem import AssignmentProblem, Route
-from fleet.assignment.regret import Choice, choices_left, give_orders
 from fleet.assignment.routes import movable, without
 from fleet.assignment.timing import SLACK_S, Timed, in_order, keeps_promises, overdue_s, sound, tasks_of
 from fleet.schedule.planning import Schedule, improve, plan
@@ -81,7 +79,7 @@ class _Search:
         network, rounds = self._problem.network, self._some_rounds()
         better = improve(network, timed.tasks, timed.schedule, self._rng, rounds, pause=pause)
         if better is not timed.schedule:
-            self._take_if_better(replace(timed, schedule=better), self._best.choices, 0.0)
+            self._take_if_better(replace(timed, schedule=better), self._best.outlook, 0.0)
 
     def _some_rounds(self) -> GoOn:
         left = iter(range(RESHUFFLES))
@@ -91,17 +89,23 @@ class _Search:
         """Some orders are taken back, and given anew with costs that are not quite right."""
         self._look_at_the_time()
         routes = self._with_some_taken_back()
-        waiting = waiting_orders(self._problem, routes)
-        given = give_orders(self._problem, routes, candidates(self._problem, routes, waiting), self._rng)
-        key = tuple(given.routes[name] for name in sorted(given.routes))
-        if key in self._tried or given.routes == self._best.routes:
+        outlook = self._look_ahead(routes)
+        key = tuple(outlook.routes[name] for name in sorted(outlook.routes))
+        if key in self._tried or outlook.routes == self._best.routes:
             return
         self._tried.add(key)
-        choices = choices_left((*self._best.choices, *given.choices), given.routes)
-        worth_s = self._problem.rules.worth_s if self._moves(given.routes) else 0.0
-        found = self._timed(given.routes, worth_s)
+        worth_s = self._problem.rules.worth_s if self._moves(outlook.routes) else 0.0
+        found = self._timed(outlook, worth_s)
         if found is not None:
-            self._take_if_better(found, _latest(choices), worth_s)
+            self._take_if_better(found, outlook, worth_s)
+
+    def _look_ahead(self, routes: dict[str, Route]) -> Outlook:
+        """An order stays with the robot that has it, unless another has room for it now: people were told of one."""
+        problem, has = self._problem, self._best.robot_of()
+        left = {stop.order for route in routes.values() for stop in route}
+        orders = [order for order in dict.fromkeys((*self._best.looked_at, *has)) if order not in left]
+        had = {order: has[order] for order in orders if order in has and order in self._had}
+        return look_ahead(problem, routes, [problem.orders[order] for order in orders if order], self._rng, had)
 
     def _with_some_taken_back(self) -> dict[str, Route]:
         """Routes without some orders that could go elsewhere."""
@@ -122,10 +126,11 @@ class _Search:
         had = self._best.robot_of()
         return any(now.get(order) != name and had.get(order) == name for order, name in self._had.items())
 
-    def _timed(self, routes: dict[str, Route], worth_s: float) -> Timed | None:
+    def _timed(self, outlook: Outlook, worth_s: float) -> Timed | None:
         """The best schedule for these routes, if it makes the whole cheaper."""
-        problem, tasks, kept = self._problem, tasks_of(self._problem, routes), self._best.timed
-        within_s = self._best.cost_s - worth_s - SLACK_S - beside_s(problem, routes) + problem.now_s * at_work(tasks)
+        problem, kept, routes = self._problem, self._best.timed, outlook.routes
+        tasks = tasks_of(problem, routes)
+        within_s = outlook.allows(self._best.cost_s - worth_s - SLACK_S)
         found: Schedule | None = None
         for order in self._orders([name for name in sorted(tasks) if tasks[name].goals != kept.tasks[name].goals]):
             if not self._go_on():
@@ -146,21 +151,15 @@ class _Search:
             self._rng.shuffle(together)
             yield together
 
-    def _take_if_better(self, timed: Timed, choices: tuple[Choice, ...], worth_s: float) -> None:
-        best, problem = self._best, self._problem
-        cost_s = plan_cost_s(problem, timed.routes, timed.tasks, timed.schedule)
+    def _take_if_better(self, timed: Timed, outlook: Outlook, worth_s: float) -> None:
+        best, problem, cost_s = self._best, self._problem, outlook.cost_of(timed.schedule)
         if cost_s > best.cost_s - worth_s - SLACK_S or not _keeps_promises(problem, best.timed, timed):
             return
         if sound(problem, timed.tasks, timed.schedule) is not None:
-            self._best = replace(best, timed=timed, cost_s=cost_s, choices=choices)
+            self._best = replace(best, timed=timed, outlook=outlook, cost_s=cost_s)
 
 
 def _keeps_promises(problem: AssignmentProblem, before: Timed, after: Timed) -> bool:
     promised_s = overdue_s(problem, before.tasks, before.schedule)
     now_s = overdue_s(problem, after.tasks, after.schedule)
     return promised_s.keys() <= now_s.keys() and keeps_promises(promised_s, now_s)
-
-
-def _latest(choices: Sequence[Choice]) -> tuple[Choice, ...]:
-    """One of each order: the last."""
-    return tuple({choice.order: choice for choice in choices}.values())

@@ -83,17 +83,17 @@ class Kept:
 
 @dataclass(frozen=True, slots=True)
 class Rules:
-    """Weights, beside one second of one robot. Assumed, except where a figure says otherwise.
+    """Weights, beside one second until an order is given. Assumed, except where a figure says otherwise.
 
-    `waiting`: one second that an order has waited; `flow`: one second until it is given; `driving`: one second of
-    driving, for the battery. An order older than `age_limit_s` is served next. Robots have up to their capacity and
+    `late`: one second more than `late_after_s`, on top; `driving`: one second of driving, for the battery and for
+    corridors that others need. An order older than `age_limit_s` is served next. Robots have up to their capacity and
     `ahead` more orders before them; orders for later count from `early_s` before their time. An order that has a robot
     goes to another only if that gains `worth_s`.
     """
 
-    waiting: float = 0.1
-    flow: float = 0.1
-    driving: float = 0.1
+    late: float = 1.0
+    late_after_s: float = 3600.0
+    driving: float = 1.0
     age_limit_s: float = 6 * 3600.0
     ahead: int = 0
     early_s: float = 600.0

@@ -97,8 +97,8 @@ class Line:
             driven_s = longer_s - wait_s - load.handling_s - give_s
             if driven_s + self._way_home_s(give_post, give_at) <= self.spare_s:
                 delayed_s = self._delayed_s(load_at, delay_s, give_at, longer_s)
-                flow_s = delayed_s + order.weight * (self.leaves_s[give_at] + given_s)
-                cost_s = longer_s + self.rules.driving * driven_s + self.rules.flow * flow_s
+                latency_s = delayed_s + order.weight * (self.leaves_s[give_at] + given_s)
+                cost_s = longer_s + self.rules.driving * driven_s + latency_s
                 if cost_s <= best.cost_s:
                     best = Fit(cost_s, load_at, give_at)
         return best if best.cost_s < inf else NO_FIT

@@ -43,6 +43,7 @@ SENTENCES: Final[Mapping[str, str]] = {
     "robot_absent": "It is to go with {robot}, which is not connected.",
     "robot_paused": "The robots that may fetch it take no orders at the moment.",
     "no_way": "No way that is open leads there.",
+    "sooner": "{robot} can fetch it sooner than a free one.",
     "charging": "The free robots are charging first.",
     "overdue": "It has waited too long and is fetched next, as soon as a robot has room.",
     "next": "It is fetched as soon as a robot has room.",
@@ -91,6 +92,9 @@ def _why(looked: _Looked, order: OpenOrder) -> Why:
     if not _is_reached(problem, order, able):
         return Why("no_way")
     if any(looked.rooms[name] > 0 for name in able):
+        comes = looked.decision.outlook.comes.get(order.id)
+        if comes is not None and looked.rooms[comes] < 1:
+            return Why("sooner", (comes,))
         return Why("charging", tuple(sorted(name for name in able if looked.rooms[name] > 0)))
     if problem.is_overdue(order.id):
         return Why("overdue")

@@ -84,7 +84,6 @@ class Life:
     def check(self, one: Decision) -> None:
         assert not one.timed.refused
         assert problems(self.network, one.timed.tasks, one.timed.schedule.journeys) == []
-        assert all(one.robot_of()[choice.order] == choice.robot for choice in one.choices)
         placed = [stop.order for route in one.routes.values() for stop in route if stop.change > 0]
         assert len(placed) == len(set(placed)), "an order is with two robots"
         for name, route in one.routes.items():

@@ -102,7 +102,7 @@ def test_no_stop_that_has_begun_is_moved_and_no_mail_changes_robots_in_a_corrido
 
 
 def test_an_order_that_has_waited_too_long_is_served_next_however_many_come_after_it() -> None:
-    rules = Rules(age_limit_s=2000.0, waiting=0.0)
+    rules = Rules(age_limit_s=2000.0, late=0.0)
     life = Life(street(8), [0], 1, Random(1), rules)
     life.arrives(order(0, 7, 6))
     number = 0

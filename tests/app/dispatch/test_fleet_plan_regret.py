@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fleet.assignment.cost import order_worth_s, route_s
 from fleet.assignment.problem import AssignmentProblem, OpenOrder, Route, Stop
 from fleet.assignment.routes import NO_FIT, Fit, leaves_s, line, orders_of, with_order
 from tests.app.dispatch.fleet_life import order
@@ -23,26 +22,12 @@ def test_the_order_that_would_lose_most_is_given_first() -> None:
     problem = problem_of(street(10), {"r0": robot(4), "r1": robot(9)}, [near, would_lose])
     after = decided(problem)
     assert after.robot_of() == {near.id: "r1", would_lose.id: "r0"}
-    first = next(choice for choice in after.choices if choice.order == would_lose.id)
-    assert (first.robot, first.next_best) == ("r0", "r1")
-    assert first.next_cost_s > first.cost_s + 500.0
 
 
 def test_an_order_that_only_one_robot_may_have_does_not_come_before_everything_else() -> None:
     near, wanted = order(0, 1, 2), replace(order(1, 12, 13), wanted=frozenset({"r0"}))
     problem = problem_of(street(30), {"r0": robot(0), "r1": robot(29)}, [near, wanted])
     assert decided(problem).robot_of()[near.id] == "r0"
-
-
-def test_a_long_way_with_the_mail_makes_no_order_worse_than_a_short_one() -> None:
-    long, short = order(0, 1, 9), order(1, 2, 3)
-    assert decided(problem_of(street(10), {"r0": robot(0)}, [long, short])).robot_of() == {long.id: "r0"}
-
-
-def test_choices_are_told_only_of_orders_that_went_as_chosen() -> None:
-    late, young = order(0, 2, 3, since_s=-7 * 3600.0), order(1, 0, 1)
-    after = decided(problem_of(street(4), {"r0": robot(0)}, [late, young]))
-    assert [choice.order for choice in after.choices] == [late.id]
 
 
 def some_route(rng: Random, posts: range, capacity: int) -> tuple[Route, list[OpenOrder]]:
@@ -74,16 +59,23 @@ def holds(problem: AssignmentProblem, name: str, route: Route) -> bool:
     return problem.drive_s(its.start.post, route) + problem.network.shortest_s[last][its.home or 0] <= its.drives_s
 
 
+def whole_cost_s(problem: AssignmentProblem, name: str, route: Route) -> float:
+    """Until all is done, until each order is given, and driving."""
+    leaves = leaves_s(problem, name, route)
+    given = [(stop.order, at_s) for stop, at_s in zip(route, leaves[1:], strict=True) if stop.change < 0]
+    weights = {one.id: one.weight for one in problem.orders.values()}
+    waits_s = sum(weights[one] * at_s for one, at_s in given)
+    return leaves[-1] + waits_s + problem.rules.driving * problem.drive_s(problem.robots[name].start.post, route)
+
+
 def every_fit(problem: AssignmentProblem, name: str, route: Route, new: OpenOrder, first: int) -> list[Fit]:
     """Each pair of places, and what the whole route costs more for it."""
-    busy_s = leaves_s(problem, name, route)[-1]
-    before_s = busy_s + (route_s(problem, name, route) if route else 0.0)
+    before_s = whole_cost_s(problem, name, route)
     fits = []
     for load_at, give_at in combinations_with_replacement(range(first, len(route) + 1), 2):
         after = with_order(route, new, Fit(0.0, load_at, give_at))
         if holds(problem, name, after):
-            after_s = leaves_s(problem, name, after)[-1] + route_s(problem, name, after)
-            fits.append(Fit(after_s + order_worth_s(problem, new) - before_s, load_at, give_at))
+            fits.append(Fit(whole_cost_s(problem, name, after) - before_s, load_at, give_at))
     return fits
 
 

@@ -71,6 +71,23 @@ async def change(service: Service, order_id: str, **values: object) -> None:
     state.dispatcher.wake()
 
 
+async def order_with(service: Service, robot: str, from_post: str, to_post: str) -> str:
+    """Place an order that only this robot may fetch."""
+    state = service.app.state.parts
+    async with state.database.transaction() as session:
+        sender = await state.sign_in_service.person(session, "sender@campus.example", state.clock.utc())
+        request = NewOrder(from_post=from_post, to_post=to_post, recipient="recipient@campus.example")
+        order_id = await placed(state.orders, session, sender, request)
+        (await state.orders.ledger.order(session, order_id)).wanted_robot = robot
+    assert await has_robot(service, order_id) == robot
+    return order_id
+
+
+async def have_no_room(service: Service, *robots: str) -> list[str]:
+    """Return the orders that these robots get: as many as they carry."""
+    return [await order_with(service, robot, "post2", "post3") for robot in robots for _ in range(2)]
+
+
 async def goals(service: Service, robot: str) -> list[str]:
     schedule = service.app.state.parts.traffic_service.schedule
     return [] if schedule is None else [goal.key for goal in schedule.controller.goals(robot)]
@@ -93,8 +110,7 @@ async def test_an_order_more_goes_with_a_robot_under_way_and_never_before_what_i
     first = await service.order("post1", "post4")
     mission = await robots[0].mission()
     await robots[0].ends(await robots[0].report(mission, Step.DEPARTED, mission.stops[0]))
-    second = await service.order("post1", "post3")
-    assert await has_robot(service, second) == "r1"
+    second = await order_with(service, "r1", "post1", "post3")
     update = await robots[0].mission()
     assert (update.id, update.update) == (mission.id, 2)
     assert update.stops[0].order_id == first, "it is on its way there"
@@ -105,9 +121,7 @@ async def test_an_order_more_goes_with_a_robot_under_way_and_never_before_what_i
 async def test_more_than_they_can_carry_waits_and_the_important_goes_first(
     service: Service, robots: tuple[PlayedRobot, PlayedRobot], clock: SteppedClock
 ) -> None:
-    carried = [await service.order("post2", "post3") for _ in range(4)]
-    for order_id in carried:
-        await has_robot(service, order_id)
+    carried = await have_no_room(service, "r1", "r2")
     waiting = await service.order("post2", "post3")
     clock.advance(0.001)  # two of one instant go by their ids
     important = await service.order("post2", "post3")
@@ -201,8 +215,7 @@ async def test_what_was_decided_on_a_world_that_has_changed_is_not_written(
     state = service.app.state.parts
     order_id = await service.order("post1", "post2")
     await robots[0].mission()
-    await service.order("post1", "post3")
-    await until(lambda: _all_have_robots(service))
+    await order_with(service, "r1", "post1", "post3")
     planner = state.planner
     work = await planner._look()
     decision = planner._decide(work, state.traffic_service.schedule)
@@ -248,8 +261,7 @@ async def _all_have_robots(service: Service) -> bool:
 async def test_who_waits_reads_how_many_are_ahead_and_is_expected_after_them(
     service: Service, robots: tuple[PlayedRobot, PlayedRobot]
 ) -> None:
-    for order_id in [await service.order("post2", "post3") for _ in range(4)]:
-        await has_robot(service, order_id)
+    await have_no_room(service, "r1", "r2")
     both = {await service.order("post2", "post3"), await service.order("post2", "post3")}
     one_ahead = "Every robot is busy, and one order is ahead of this one."
 

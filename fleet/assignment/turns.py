@@ -1,0 +1,172 @@
+"""One robot with the orders that could come in turn once it has done what it has: what each place would cost.
+
+Ways are as long as on empty corridors. What a robot has is done when the schedule says.
+"""
+
+from collections.abc import Sequence
+from math import inf
+from typing import NamedTuple
+
+from fleet.assignment.cost import latency_s
+from fleet.assignment.problem import AssignmentProblem, OpenOrder, Route
+from fleet.assignment.routes import NO_FIT, Fit, leaves_s, line, orders_of, room, with_order
+
+
+class Waiting(NamedTuple):
+    """An order made ready for many questions; times from now on. `takes_s`: from its first stop to its end."""
+
+    order: OpenOrder
+    load: int
+    give: int
+    soonest_s: float
+    takes_s: float
+    way_s: float
+    waited_s: float
+
+
+def waiting(problem: AssignmentProblem, order: OpenOrder) -> Waiting:
+    load, give = order.load, order.give
+    way_s = problem.network.shortest_s[load.post][give.post]
+    takes_s = load.handling_s + way_s + give.handling_s
+    soonest_s, waited_s = load.not_before_s - problem.now_s, problem.now_s - order.since_s
+    return Waiting(order, load.post, give.post, soonest_s, takes_s, way_s, waited_s)
+
+
+_At = tuple[float, int, float]
+"""Behind some of the turns: when and where, and what they have cost."""
+Place = Fit | int
+"""Between the stops of the route, or before so many of the turns."""
+
+
+class Turns:
+    """`route`: what the robot has and takes along; `behind`: the orders in turn after that."""
+
+    def __init__(self, problem: AssignmentProblem, name: str, route: Route) -> None:
+        self.name = name
+        self._problem, self._robot = problem, problem.robots[name]
+        self._shortest_s = problem.network.shortest_s
+        self._weights = problem.rules.late, problem.rules.late_after_s, problem.rules.driving
+        self._late_s = self._later_than_alone(route)
+        self._takes(route)
+        self._line(())
+
+    def _later_than_alone(self, route: Route) -> float:
+        """By how much the schedule has it done later than on empty corridors."""
+        kept = self._problem.kept
+        if not route or kept is None or kept.goals.get(self.name) != tuple(stop.goal for stop in route):
+            return 0.0
+        done_s = kept.schedule.journeys[self.name].done_s - self._problem.now_s
+        return done_s - leaves_s(self._problem, self.name, route)[-1]
+
+    def _takes(self, route: Route) -> None:
+        problem, robot = self._problem, self._robot
+        self.route, self.room = route, room(problem, self.name, route)
+        self._begins = (self.done_s(route), route[-1].goal.post if route else robot.start.post, 0.0)
+        self.route_s = self._route_s(route)
+        self._spare_s = robot.drives_s - problem.drive_s(robot.start.post, route)
+
+    def done_s(self, route: Route) -> float:
+        return leaves_s(self._problem, self.name, route)[-1] + self._late_s
+
+    def _route_s(self, route: Route) -> float:
+        problem = self._problem
+        cost_s = problem.rules.driving * problem.drive_s(self._robot.start.post, route)
+        for stop, at_s in zip(route, leaves_s(problem, self.name, route)[1:], strict=True):
+            if stop.change < 0 and stop.order in problem.orders:
+                order = problem.orders[stop.order]
+                cost_s += latency_s(problem.rules, order.weight, at_s + self._late_s + problem.now_s - order.since_s)
+        return cost_s
+
+    def _line(self, behind: Sequence[Waiting]) -> None:
+        self.behind = tuple(behind)
+        self._at = [self._begins]
+        for one in self.behind:
+            self._at.append(self._after(self._at[-1], (one,)))
+
+    def _after(self, at: _At, turns: Sequence[Waiting]) -> _At:
+        at_s, post, cost_s = at
+        late, late_after_s, driving, shortest_s = *self._weights, self._shortest_s
+        for order, load, give, soonest_s, takes_s, way_s, waited_s in turns:
+            there_s = shortest_s[post][load]
+            at_s += there_s
+            if at_s < soonest_s:
+                at_s = soonest_s
+            at_s += takes_s
+            latency_s = at_s + waited_s
+            if latency_s > late_after_s:  # as in `cost.latency_s`; this is asked thousands of times for a decision
+                latency_s += late * (latency_s - late_after_s)
+            cost_s += order.weight * latency_s + driving * (there_s + way_s)
+            post = give
+        return at_s, post, cost_s
+
+    # What it costs.
+
+    @property
+    def cost_s(self) -> float:
+        return self.route_s + self._at[-1][2]
+
+    def with_turns_s(self, behind: Sequence[Waiting]) -> float:
+        """The cost, if these were in turn; without end if the charge does not last for them."""
+        return self.route_s + self._after(self._begins, behind)[2] if self._lasts(behind) else inf
+
+    def best_place(self, one: Waiting) -> tuple[float, int]:
+        """Where the cost rises least, and by how much; of equal places the last."""
+        if not one.order.may_go_with(self.name):
+            return inf, 0
+        best_s, best, behind = inf, 0, self.behind
+        for place in range(len(behind), -1, -1):
+            later = (one, *behind[place:])
+            cost_s = self._after(self._at[place], later)[2]
+            if cost_s < best_s and (self._spare_s == inf or self._lasts((*behind[:place], *later))):
+                best_s, best = cost_s, place
+        return best_s - self._at[-1][2], best
+
+    def along(self, one: Waiting) -> tuple[float, Fit]:
+        """The same between the stops of the route, where it has room for more than one."""
+        if self.room < 1 or not self.route or self._robot.capacity < 2 or not one.order.may_go_with(self.name):
+            return inf, NO_FIT
+        fit = line(self._problem, self.name, self.route).best_fit(one.order)
+        if fit is NO_FIT:
+            return inf, NO_FIT
+        taken = Turns(self._problem, self.name, ())
+        taken._late_s = self._late_s
+        taken._takes(with_order(self.route, one.order, fit))
+        return taken.with_turns_s(self.behind) - self.cost_s, fit
+
+    def _lasts(self, behind: Sequence[Waiting]) -> bool:
+        """The charge, for all that and the way home."""
+        spare_s = self._spare_s
+        if spare_s == inf or not behind or (self._robot.goes_beyond and not orders_of(self.route) and len(behind) == 1):
+            return True
+        post = self._begins[1]
+        for one in behind:
+            spare_s -= self._shortest_s[post][one.load] + one.way_s
+            post = one.give
+        return spare_s >= (0.0 if self._robot.home is None else self._shortest_s[post][self._robot.home])
+
+    # What changes.
+
+    def put(self, one: Waiting, place: Place) -> None:
+        if isinstance(place, Fit):
+            self._takes(with_order(self.route, one.order, place))
+            self._line(self.behind)
+        elif self._robot.capacity > 1 and self.room > 0 and not self.route:
+            self._takes(one.order.stops)
+            self._line(self.behind)
+        else:
+            self._line((*self.behind[:place], one, *self.behind[place:]))
+
+    def set_behind(self, behind: Sequence[Waiting]) -> None:
+        self._line(behind)
+
+    def given_now(self) -> Route:
+        """The route with as many of the first in turn as there is room for."""
+        route = self.route
+        for one in self.behind:
+            if room(self._problem, self.name, route) < 1:
+                break
+            fit = line(self._problem, self.name, route).best_fit(one.order)
+            if fit is NO_FIT:
+                break
+            route = with_order(route, one.order, fit)
+        return route
