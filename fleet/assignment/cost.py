@@ -2,7 +2,6 @@
 driving; and by how much robots do what they have later than on empty corridors, since they wait for each other."""
 
 from fleet.assignment.problem import Rules
-from fleet.schedule.planning import Schedule
 
 
 def latency_s(rules: Rules, weight: float, seconds: float) -> float:

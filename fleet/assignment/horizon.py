@@ -16,11 +16,11 @@ from fleet.assignment.problem import AssignmentProblem, OpenOrder, Route, Routes
 from fleet.assignment.turns import Place, Turns, Waiting, waiting
 from fleet.schedule.planning import Schedule
 
-SOONEST: Final = 8
+SOONEST: Final = 6
 """So many robots without room are looked at."""
-MORE: Final = 24
+MORE: Final = 12
 """So many orders come in turn beyond what there is room for; the others are too far away to matter now."""
-LOOKS: Final = 500
+LOOKS: Final = 200
 """After so many looks at places for what is in turn already no more is begun."""
 MOST_REGRET_S: Final = 600.0
 """An order that only one robot can have does not come before everything else."""
@@ -68,16 +68,12 @@ def look_ahead(
         if order not in placed:
             given[name] = (*given[name], *problem.orders[order].stops)
             placed.add(order)
+    behind = [(one.order.id, turns.name) for turns in all_turns.values() for one in turns.behind]
     return Outlook(
         given,
         sum(turns.cost_s for turns in all_turns.values()) + sum(_not_soon_s(problem, one) for one in left),
         sum(problem.now_s + all_turns[name].done_s(route) for name, route in given.items() if route),
-        {
-            one.order.id: turns.name
-            for turns in all_turns.values()
-            for one in turns.behind
-            if one.order.id not in placed
-        },
+        {order: name for order, name in behind if order not in placed},
     )
 
 
@@ -107,7 +103,7 @@ class _Row:
     one: Waiting
     least_s: float
     places: dict[str, tuple[float, Place]] = field(default_factory=dict)
-    best: _Best = _Best()
+    best: _Best = field(default_factory=_Best)
 
     def rank(self) -> tuple[float, str]:
         if self.best.turns is None:

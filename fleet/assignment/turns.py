@@ -46,8 +46,11 @@ class Turns:
         self._problem, self._robot = problem, problem.robots[name]
         self._shortest_s = problem.network.shortest_s
         self._weights = problem.rules.late, problem.rules.late_after_s, problem.rules.driving
-        self._late_s = self._later_than_alone(route)
+        self._late_s = 0.0
         self._takes(route)
+        if (late_s := self._later_than_alone(route)) != 0.0:
+            self._late_s = late_s
+            self._takes(route)
         self._line(())
 
     def _later_than_alone(self, route: Route) -> float:
@@ -56,26 +59,31 @@ class Turns:
         if not route or kept is None or kept.goals.get(self.name) != tuple(stop.goal for stop in route):
             return 0.0
         done_s = kept.schedule.journeys[self.name].done_s - self._problem.now_s
-        return done_s - leaves_s(self._problem, self.name, route)[-1]
+        return done_s - self._begins[0]
 
     def _takes(self, route: Route) -> None:
         problem, robot = self._problem, self._robot
         self.route, self.room = route, room(problem, self.name, route)
-        self._begins = (self.done_s(route), route[-1].goal.post if route else robot.start.post, 0.0)
-        self.route_s = self._route_s(route)
+        self.route_s, at_s = self._route_s(route)
+        self._begins = (at_s, route[-1].goal.post if route else robot.start.post, 0.0)
         self._spare_s = robot.drives_s - problem.drive_s(robot.start.post, route)
+        self._goes_along = line(problem, self.name, route) if self.room > 0 and route and robot.capacity > 1 else None
 
     def done_s(self, route: Route) -> float:
+        """When it has done these stops, in seconds from now."""
+        if route == self.route:
+            return self._begins[0]
         return leaves_s(self._problem, self.name, route)[-1] + self._late_s
 
-    def _route_s(self, route: Route) -> float:
-        problem = self._problem
+    def _route_s(self, route: Route) -> tuple[float, float]:
+        """What these stops cost, and when they are done."""
+        problem, leaves = self._problem, leaves_s(self._problem, self.name, route)
         cost_s = problem.rules.driving * problem.drive_s(self._robot.start.post, route)
-        for stop, at_s in zip(route, leaves_s(problem, self.name, route)[1:], strict=True):
+        for stop, at_s in zip(route, leaves[1:], strict=True):
             if stop.change < 0 and stop.order in problem.orders:
                 order = problem.orders[stop.order]
                 cost_s += latency_s(problem.rules, order.weight, at_s + self._late_s + problem.now_s - order.since_s)
-        return cost_s
+        return cost_s, leaves[-1] + self._late_s
 
     def _line(self, behind: Sequence[Waiting]) -> None:
         self.behind = tuple(behind)
@@ -89,7 +97,7 @@ class Turns:
         for order, load, give, soonest_s, takes_s, way_s, waited_s in turns:
             there_s = shortest_s[post][load]
             at_s += there_s
-            if at_s < soonest_s:
+            if at_s < soonest_s:  # noqa: PLR1730  # a call takes longer than all else here
                 at_s = soonest_s
             at_s += takes_s
             latency_s = at_s + waited_s
@@ -123,15 +131,15 @@ class Turns:
 
     def along(self, one: Waiting) -> tuple[float, Fit]:
         """The same between the stops of the route, where it has room for more than one."""
-        if self.room < 1 or not self.route or self._robot.capacity < 2 or not one.order.may_go_with(self.name):
+        if self._goes_along is None or not one.order.may_go_with(self.name):
             return inf, NO_FIT
-        fit = line(self._problem, self.name, self.route).best_fit(one.order)
-        if fit is NO_FIT:
+        fit = self._goes_along.best_fit(one.order)
+        if not 0 <= fit.load_at < len(self.route):
             return inf, NO_FIT
-        taken = Turns(self._problem, self.name, ())
-        taken._late_s = self._late_s
-        taken._takes(with_order(self.route, one.order, fit))
-        return taken.with_turns_s(self.behind) - self.cost_s, fit
+        route = with_order(self.route, one.order, fit)
+        route_s, at_s = self._route_s(route)
+        behind_s = self._after((at_s, route[-1].goal.post, 0.0), self.behind)[2]
+        return route_s + behind_s - self.cost_s, fit
 
     def _lasts(self, behind: Sequence[Waiting]) -> bool:
         """The charge, for all that and the way home."""

@@ -1,4 +1,4 @@
-"""The planner looks ahead: an order may wait for a robot that comes by soon, and nothing that is only likely is told."""
+"""The planner looks ahead: an order may wait for a robot that comes by soon, and what is only likely is not told."""
 
 from dataclasses import replace
 from random import Random
@@ -93,7 +93,7 @@ def test_a_short_way_comes_before_a_long_one_until_that_has_waited_long() -> Non
 
 
 def test_an_order_that_a_robot_had_is_never_left_without_one() -> None:
-    """Something nearer has come: it comes first, and what the robot was to fetch stays behind it, or goes to another."""
+    """Something nearer comes first; what the robot was to fetch stays behind it, or goes to another."""
     had = order(0, 15, 16)
     robots = {"r0": robot(0, route=had.stops), "r1": robot(19, route=BRINGS.stops[1:], begun=1)}
     near = [order(number, 0, 1, since_s=-3000.0) for number in range(5, 8)]
