@@ -84,10 +84,13 @@ def test_in_the_tunnels_most_of_what_could_be_delivered_without_conflicts_is() -
     assert 0.85 < run_.of_orders_taken < 1.0
 
 
-@pytest.mark.parametrize(
-    ("rule", "least"), [(throughput.PLAIN, 1.0), (Rule("quickest", orders=5, rounds=1), 1.0), (None, 0.97)]
-)
-def test_one_robot_alone_delivers_what_it_would_without_conflicts(rule: Rule | None, least: float) -> None:
-    """The planner weighs age against distance, so it does not always take the nearest order."""
+@pytest.mark.parametrize("rule", [throughput.PLAIN, Rule("quickest", orders=5, rounds=1)])
+def test_one_robot_alone_delivers_what_it_would_without_conflicts(rule: Rule) -> None:
     run_ = throughput.run((throughput.Case(1, 1, rule), 1, 60.0))
-    assert least * run_.same_rule <= run_.delivered <= run_.same_rule
+    assert run_.delivered == run_.same_rule
+
+
+def test_one_robot_alone_delivers_no_less_with_the_planner_than_by_the_nearest_order() -> None:
+    """It may be more: the planner looks further than to the nearest."""
+    run_ = throughput.run((throughput.Case(1, 1), 1, 60.0))
+    assert run_.delivered >= run_.same_rule
