@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.fleet_simulation.service import CALM
+from benchmarks.stepped_fleet.fates import OFF_S, Rates
 from benchmarks.stepped_fleet.judge import TrueFloor
-from benchmarks.stepped_fleet.run import OFF_S, Fleet, Run
+from benchmarks.stepped_fleet.run import Fleet, Run
 from maps import find_map
 from robot.simulated.true_poses import TruePose
 
@@ -53,7 +55,7 @@ def test_two_robots_with_the_whole_service_deliver_and_touch_nothing():
 @pytest.mark.nightly
 @pytest.mark.timeout(600)
 def test_robots_killed_in_turns_on_a_crossing_go_on_among_others_and_touch_nothing():
-    fleet = Fleet(str(STAR), robots=3, scale=1.0, waiting=4, turns_killed=0.5)
+    fleet = Fleet(str(STAR), robots=3, scale=1.0, waiting=4, rates=Rates(turns_killed=0.5))
     figures = Run(fleet, minutes=10, seed=1).carry_out()
     assert (figures["touches"], figures["ungranted"], figures["astray"]) == (0, [], [])
     assert figures["befallen"]["kill in a turn"] >= 5
@@ -61,6 +63,19 @@ def test_robots_killed_in_turns_on_a_crossing_go_on_among_others_and_touch_nothi
     assert figures["alarms"] == {}, "no person is asked"
     assert figures["longest_on_a_crossing_s"] < 3 * OFF_S, "one that is killed twice there goes on, too"
     assert figures["orders"]["delivered"] >= 5
+
+
+@pytest.mark.nightly
+@pytest.mark.timeout(600)
+def test_robots_that_are_carried_away_or_found_dead_go_on_among_closures_and_touch_nothing():
+    rates = Rates(kill_s=300, cut_s=200, lift_s=120, die_s=300, close_s=200)
+    figures = Run(
+        Fleet(str(STAR), robots=3, scale=1.0, waiting=4, rates=rates, pace=CALM), minutes=15, seed=1
+    ).carry_out()
+    assert ([one for one in figures["collisions"] if "a person" not in one], figures["ungranted"]) == ([], [])
+    assert figures["astray"] == []
+    assert min(figures["befallen"][what] for what in ("kill", "cut", "lift", "death", "closure")) >= 1
+    assert figures["handed_over"] >= 3
 
 
 @pytest.mark.nightly

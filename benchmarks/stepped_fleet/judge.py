@@ -23,6 +23,7 @@ class TrueFloor:
     ungranted: list[str] = field(default_factory=list)
     longest_on_crossing_s: float = 0.0
     driven_m: float = 0.0
+    _handled: dict[str, int] = field(default_factory=dict)
     _in: dict[str, str | None] = field(default_factory=dict)
     _crossing_since: dict[str, tuple[str, float]] = field(default_factory=dict)
     _last: dict[str, TruePose] = field(default_factory=dict)
@@ -49,11 +50,13 @@ class TrueFloor:
             self.longest_on_crossing_s = max(self.longest_on_crossing_s, pose.time_s - since_s)
 
     def look_at_grants(self, poses: Mapping[str, TruePose], granted: Mapping[str, set[str]]) -> None:
-        """`granted`: as the database has it, robot → corridors and spurs of the track, by name."""
+        """`granted`: as the database has it, robot → corridors and spurs of the track, by name. Where a person puts a
+        robot it did not enter."""
         for name, pose in poses.items():
             corridor = self._corridor(pose)
             entered, self._in[name] = corridor != self._in.get(name), corridor
-            if entered and corridor and corridor not in granted.get(name, ()):
+            carried, self._handled[name] = pose.handled != self._handled.get(name, pose.handled), pose.handled
+            if entered and not carried and corridor and corridor not in granted.get(name, ()):
                 self.ungranted.append(f"{name} in {corridor} at {pose.time_s:.0f} s")
 
     def _corridor(self, pose: TruePose) -> str | None:

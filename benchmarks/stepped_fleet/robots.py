@@ -79,6 +79,11 @@ class SteppedRobot:
             return False
         return self.parts.navigator.crossing is not None and self.parts.mind.hands.view.motion == Turn.name
 
+    @property
+    def stands_by_emergency_stop(self) -> bool:
+        """It was told so, since it was taken out."""
+        return self.is_on and self.parts is not None and "emergency_stop" in self.parts.mind.hands.view.faults
+
     def switch_on(self) -> None:
         """Assemble the daemon; after a kill on the disk and in the place that the last one left."""
         pose = self._put_away()

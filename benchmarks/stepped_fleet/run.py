@@ -1,7 +1,6 @@
 """One run: a fleet of whole robots on a campus for some minutes, and what the bodies did."""
 
 import asyncio
-import math
 import tempfile
 from collections import Counter
 from dataclasses import dataclass, field
@@ -18,8 +17,9 @@ from benchmarks.fleet_simulation.durations import FITTED, Taking
 from benchmarks.fleet_simulation.loop import LoopClock, SimulatedLoop
 from benchmarks.fleet_simulation.network import Network
 from benchmarks.fleet_simulation.people import People
-from benchmarks.fleet_simulation.service import MEMORY, SHIPPED, PlansInRounds, Service
+from benchmarks.fleet_simulation.service import MEMORY, SHIPPED, Pace, PlansInRounds, Service
 from benchmarks.stepped_fleet.bystanders import Bystanders
+from benchmarks.stepped_fleet.fates import NONE, Fates, Rates
 from benchmarks.stepped_fleet.judge import TrueFloor
 from benchmarks.stepped_fleet.paces import Paces
 from benchmarks.stepped_fleet.robots import SteppedRobot
@@ -34,25 +34,18 @@ from robot.simulated import World
 STEP_S: Final = 0.02
 LOOK_EVERY: Final = 5
 """Steps between two looks of the judge: a tenth of a second."""
-OFF_S: Final = 30.0
-NEAR_M: Final = 1.2
-DIES_AFTER_S: Final = (0.1, 1.2)
-"""So long after the beginning of a turn, which takes about a second for a quarter."""
 
 
 @dataclass(frozen=True)
 class Fleet:
-    """`scale`: of the corridors. `kill_every_s`: on an average, of each robot, which is off for half a minute then;
-    `cut_every_s`: the same for its network; `turns_killed`: the share of the turns on a crossing in whose middle its
-    daemon is killed. 0: never."""
+    """`scale`: of the corridors. `waiting`: so many orders always wait."""
 
     map: str = "carleton"
     robots: int = 4
     scale: float = 0.1
     waiting: int = 6
-    kill_every_s: float = 0.0
-    cut_every_s: float = 0.0
-    turns_killed: float = 0.0
+    rates: Rates = NONE
+    pace: Pace = SHIPPED
 
 
 @dataclass
@@ -80,16 +73,18 @@ class Run:
         path.write_text(toml_of(scaled(load_map_file(map_path(self.fleet.map)), self.fleet.scale)))
         campus, clock = read_map(path), LoopClock(asyncio.get_running_loop())
         planning = PlansInRounds(Random(f"{self.seed} planning"), 3)
-        service = await Service.begin(folder / "service", str(path), clock, planning, SHIPPED, traffic="schedule")
+        service = await Service.begin(
+            folder / "service", str(path), clock, planning, self.fleet.pace, traffic="schedule"
+        )
         people = People(service.parts, Taking(campus, FITTED, self.seed), Random(f"{self.seed} people"))
         await people.begin()
         world, floor, paces = World(campus, seed=self.seed), TrueFloor(campus.track), Paces(campus.track)
         await self._put_down(campus, world, folder, clock, service)
         bystanders = Bystanders(people, campus.track, Random(f"{self.seed} bystanders"))
         ordering = Saturated(self.fleet.waiting).run(people, sorted(campus.posts), Random(f"{self.seed} orders"))
-        fates = [fate(one) for one in self.robots for fate in (self._befalls, self._dies_turning)]
         silences = [keep_silent(one, campus.track, self.befallen) for one in self.robots]
-        tasks = [asyncio.create_task(one) for one in (ordering, *fates, *silences)]
+        fates = Fates(self.fleet.rates, self.robots, people, campus, self.seed, self.befallen)
+        tasks = [*(asyncio.create_task(one) for one in (ordering, *silences)), *fates.tasks()]
         await self._step(clock, service, (floor, paces), bystanders, tasks)
         found = await self._figures(service, people, floor, bystanders, process_time() - begun_s)
         found["takes"] = paces.figures()
@@ -143,49 +138,6 @@ class Run:
                 await bystanders.tick(self.robots, clock.now())
                 floor.look_at_grants(poses, await _granted(service))
                 paces.hear(await _occupied(service))
-
-    async def _befalls(self, one: SteppedRobot) -> None:
-        rng = Random(f"{self.seed} {one.name} fate")
-        rates = {"kill": self.fleet.kill_every_s, "cut": self.fleet.cut_every_s}
-        due = {what: rng.expovariate(1 / every_s) for what, every_s in rates.items() if every_s}
-        if not due:
-            await asyncio.Event().wait()
-        while True:
-            what = min(due, key=due.__getitem__)
-            wait_s = due[what]
-            await asyncio.sleep(wait_s)
-            due = {other: left_s - wait_s for other, left_s in due.items()}
-            due[what] = rng.expovariate(1 / rates[what])
-            self.befallen[what] += 1
-            if what == "kill":
-                await self._kill(one)
-            else:
-                await one.network.be_away(rng.uniform(5.0, 120.0))
-
-    async def _dies_turning(self, one: SteppedRobot) -> None:
-        rng = Random(f"{self.seed} {one.name} turns")
-        turned = False
-        while True:
-            await asyncio.sleep(STEP_S)
-            turned, turned_before = one.turns_on_a_crossing, turned
-            if turned_before or not turned or rng.random() >= self.fleet.turns_killed:
-                continue
-            await asyncio.sleep(rng.uniform(*DIES_AFTER_S))
-            if one.turns_on_a_crossing:
-                self.befallen["kill in a turn"] += 1
-                self.befallen["kill in a turn beside others"] += self._others_near(one)
-                await self._kill(one)
-
-    def _others_near(self, one: SteppedRobot) -> bool:
-        """Others in a bay of that post, or before its crossing."""
-        here = one.body.pose
-        others = (other.body.pose for other in self.robots if other is not one)
-        return any(math.dist((here.x_m, here.y_m), (there.x_m, there.y_m)) < NEAR_M for there in others)
-
-    async def _kill(self, one: SteppedRobot) -> None:
-        one.kill()
-        await asyncio.sleep(OFF_S)
-        one.switch_on()
 
     async def _figures(
         self, service: Service, people: People, floor: TrueFloor, bystanders: Bystanders, took_s: float
