@@ -105,11 +105,13 @@ class _Row:
     places: dict[str, tuple[float, Place]] = field(default_factory=dict)
     best: _Best = field(default_factory=_Best)
 
-    def rank(self) -> tuple[float, str]:
+    def rank(self) -> tuple[float, float, str]:
+        """The less, the sooner; of those that cost the same the oldest."""
+        order = self.one.order
         if self.best.turns is None:
-            return inf, self.one.order.id
+            return inf, order.since_s, order.id
         regret_s = min(self.best.next_s - self.best.cost_s, MOST_REGRET_S)
-        return self.best.cost_s - self.least_s - regret_s, self.one.order.id
+        return round(self.best.cost_s - self.least_s - regret_s, 3), order.since_s, order.id
 
     def find_best(self, turns: Iterable[Turns]) -> None:
         best, best_s, following, next_s = None, inf, None, inf

@@ -72,7 +72,7 @@ def test_what_the_service_says_of_orders_is_known() -> None:
 
 
 def test_what_the_planner_says_of_orders_is_known() -> None:
-    not_said = {"fetched", "fetched_after", "later", "next", "turn"}
+    not_said = {"fetched", "fetched_after", "later", "next", "sooner", "turn"}
     said = [Why(code, ("r1",)).sentence(str) for code in SENTENCES.keys() - not_said]
     assert [one for one in said if words_of(one) is None] == []
 

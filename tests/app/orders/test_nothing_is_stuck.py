@@ -220,7 +220,7 @@ async def test_a_robot_that_could_not_get_to_two_senders_takes_other_work_while_
 ) -> None:
     """As many as it can carry: none of them is aboard, so none takes a place in it or keeps it where it is."""
     given_up = [await world.place("post3", "post4"), await world.place("post3", "post4")]
-    await world.goes_on("r1", "no way", "no way", "")
+    await world.goes_on("r1", *["no way"] * 4, "")  # to each sender, and to no recipient
     assert [await world.state(one) for one in given_up] == [OrderState.ATTENTION] * 2
     others = [await world.place("post3", "post5"), await world.place("post3", "post5")]
     await world.dispatch()
