@@ -32,27 +32,22 @@ ends = ["a", "b"]
 """
 
 
-@pytest.mark.parametrize(
-    "its_deg, other_deg", [(32.0, -28.0), (-32.0, 28.0), (28.0, -32.0), (38.0, -25.0), (-38.0, 25.0)]
-)
+@pytest.mark.parametrize("its_deg, other_deg", [(32.0, -28.0), (-38.0, 25.0)])
 def test_it_enters_the_bay_that_it_was_granted(tmp_path: Path, its_deg: float, other_deg: float) -> None:
     """Where it is comes from its true pose: on the other bay's side of the crossing it never is."""
     file = tmp_path / "fork.toml"
     file.write_text(FORK.format(its_deg, other_deg))
     run = SimulatedRun(tmp_path, map=str(file))
     run.missions.join(PlayedService(run.missions))
-    for _ in range(3):
-        run.asks("", "visit(b)")
-        wrong_m: list[float] = []
+    run.asks("", "visit(b)")
+    beside_m: list[float] = []
 
-        def is_in_its_bay(wrong_m: list[float] = wrong_m) -> bool:
-            here = run.robot.pose
-            if here.x_m > 2.15:
-                wrong_m.append(math.copysign(1.0, other_deg) * here.y_m)
-            return run.bays[-1:] == ["b_bay1"] and run.visited[-1:] == ["b_bay1"]
+    def is_in_its_bay() -> bool:
+        here = run.robot.pose
+        if here.x_m > 2.15:
+            beside_m.append(math.copysign(1.0, other_deg) * here.y_m)
+        return run.bays[-1:] == ["b_bay1"] and run.visited[-1:] == ["b_bay1"]
 
-        run.until(is_in_its_bay, 120)
-        assert max(wrong_m) < 0.05
-        run.asks("", "visit(a)")
-        run.until(lambda: run.visited[-1:] == ["a_bay1"], 120)
+    run.until(is_in_its_bay, 120)
+    assert max(beside_m) < 0.05
     run.close()
