@@ -121,7 +121,7 @@ bench-service-kills: setup-develop ## Kill the service 300 times under load: wha
 bench-fleet: setup-develop ## Measure the fleet in an event simulation: every small map, throughput, deadlocks; JSON and plots
 	@$(BIN)/python -m benchmarks.fleet $(ARGS)
 
-mutants-fleet: setup-develop ## Break the traffic rules on purpose, some forty times: says which test sees each; ARGS="crossing" runs some
+mutants-fleet: setup-develop ## Break the traffic rules on purpose, some fifty times: says which test sees each; ARGS="crossing" runs some
 	@$(BIN)/python -m benchmarks.fleet.mutants $(ARGS)
 
 fuzz-mind: setup-develop ## Feed the mind 10,000 mangled programs: each is read and run, or what is wrong is named

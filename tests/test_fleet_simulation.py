@@ -177,3 +177,12 @@ def test_ways_have_paces_of_their_own_and_the_ground_as_many_docks_as_asked(tmp_
     there_s, back_s = ([taking.drive_s(leg, Random(n)) for n in range(50)] for leg in (THERE, BACK))
     assert max(there_s) / min(there_s) < 1.5 < (max(back_s) / min(back_s)) * 1.2
     assert sum(there_s) != pytest.approx(sum(back_s), rel=0.01)
+
+
+def test_the_ground_has_no_more_bays_for_passing_than_asked_and_all_homes_and_docks(tmp_path: Path) -> None:
+    one, all_of_them = Ground(bays=1).read(tmp_path).track, TUNNELS.track
+    for post in TUNNELS.posts:
+        here, there = ([bay for bay in track.bays_of(post) if bay.is_for_passing] for track in (one, all_of_them))
+        assert len(here) == min(1, len(there))
+    assert len(one.home_bays) == len(all_of_them.home_bays)
+    assert len(one.docks()) == len(all_of_them.docks())

@@ -1,6 +1,7 @@
 """Whole robots with the whole service in one stepped world: no body touches another, and the judge would see it."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,16 @@ def test_the_judge_sees_a_corridor_that_was_not_granted(granted: set[str], seen:
     for _ in range(3):
         floor.look_at_grants({"r1": pose(0.0, 1.0, 2.0)}, {"r1": granted})
     assert len(floor.ungranted) == seen
+
+
+def test_where_a_person_puts_a_robot_it_has_not_entered_and_where_it_drives_then_it_has():
+    floor = TrueFloor(TRACK)
+    floor.look_at_grants({"r1": pose(0.0, 2.0, 2.0)}, {})
+    floor.look_at_grants({"r1": replace(pose(1.0, 1.0, 2.0), handled=1)}, {})
+    assert floor.ungranted == []
+    floor.look_at_grants({"r1": replace(pose(2.0, 2.0, 2.0), handled=1)}, {})
+    floor.look_at_grants({"r1": replace(pose(3.0, 1.0, 2.0), handled=1)}, {})
+    assert len(floor.ungranted) == 1
 
 
 def test_the_judge_counts_how_long_a_robot_is_on_a_crossing():

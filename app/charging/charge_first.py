@@ -16,7 +16,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.charging.errands import send_on_errand
 from app.charging.free_docks import UNTIL_RATIO, free_docks
 from app.dispatch.charge_limits import LEAVES_DOCK, THRESHOLDS, Charges
-from app.dispatch.open_work import read_open_work
+from app.dispatch.open_work import OpenWork, read_open_work
 from app.models import ClaimRow, MissionRow, MissionState, RobotRow, StopRow
 from app.orders.stops import stops_left
 from app.robots.mission_updates import tell_mission
@@ -39,53 +39,56 @@ class ChargeFirst:
 
     async def sends(self, session: AsyncSession, robot: RobotRow, claim: ClaimRow, legs: Sequence[Leg]) -> bool:
         """Tell if the robot goes to a dock instead: then its reservation request is answered by that."""
-        charges = Charges(self.fleet.orders.ledger.ways, self.fleet.settings, self.fleet.spending.rates)
+        # Most robots have enough: they are let in without a further question.
+        if all(self._charges.goes_on(robot, way) for way in (_posts(legs), _asked(claim))):
+            return False
         if not self.fleet.connections.understands(robot.name, UNTIL_RATIO):
             return False
         mission = await _mission(session, robot.name)
         if mission is None:
-            is_sent = await self._sends_from_the_way_home(session, robot, claim, charges)
+            is_sent = await self._sends_from_the_way_home(session, robot, claim)
         else:
-            is_sent = not charges.goes_on(robot, _posts(legs)) and await self._sends_first(
-                session, robot, claim, (mission, charges)
-            )
+            is_sent = await self._sends_first(session, robot, mission, claim, legs)
         if is_sent:
             claim.granted, claim.reason = False, REASON
         return is_sent
 
     async def _sends_first(
-        self, session: AsyncSession, robot: RobotRow, claim: ClaimRow, its: tuple[MissionRow, Charges]
+        self, session: AsyncSession, robot: RobotRow, mission: MissionRow, claim: ClaimRow, legs: Sequence[Leg]
     ) -> bool:
-        mission, charges = its
         left = await stops_left(session, mission.id)
-        if not await _breaks_off(session, left, claim):
+        if self._charges.goes_on(robot, _posts(legs)) or not await _breaks_off(session, left, claim):
             return False
         work = await read_open_work(session, self.fleet.clock.utc())
-        dock = charges.nearest_dock(robot, free_docks(self.fleet.orders.ledger.ways, work, robot.name))
+        dock = self._nearest_dock(robot, work)
         if dock is None:
             return False  # its own battery plan has the last word
-        until_ratio = max(LEAVES_DOCK, charges.needed(robot, [stop.post for stop in left]))
+        until_ratio = max(LEAVES_DOCK, self._charges.needed(robot, [stop.post for stop in left]))
         await self._put_first(session, robot, mission, left, (dock, until_ratio))
         return True
 
-    async def _sends_from_the_way_home(
-        self, session: AsyncSession, robot: RobotRow, claim: ClaimRow, charges: Charges
-    ) -> bool:
+    async def _sends_from_the_way_home(self, session: AsyncSession, robot: RobotRow, claim: ClaimRow) -> bool:
         home = self._home_of(robot)
         if home is None or claim.goal not in (home, robot.home_bay):
             return False
-        way = _posts(Leg.model_validate(leg) for leg in claim.legs)
-        if charges.goes_on(robot, way) or await _has_charged_in_vain(session, robot):
+        if self._charges.goes_on(robot, _asked(claim)) or await _has_charged_in_vain(session, robot):
             return False
         work = await read_open_work(session, self.fleet.clock.utc())
-        dock = charges.nearest_dock(robot, free_docks(self.fleet.orders.ledger.ways, work, robot.name))
+        dock = self._nearest_dock(robot, work)
         if dock in (None, home) or not work.robots[robot.name].takes_work:
             return False
         stop = StopRow(id=new_id(), mission_id=new_id(), position=0, post=dock, action=StopAction.DOCK)
-        stop.until_ratio = max(THRESHOLDS.sufficient, charges.needed(robot, [dock, home]))
+        stop.until_ratio = max(THRESHOLDS.sufficient, self._charges.needed(robot, [dock, home]))
         await send_on_errand(session, self.fleet, robot, stop)
         log.info("charges_on_the_way_home", robot=robot.name, dock=dock, until_ratio=stop.until_ratio)
         return True
+
+    @property
+    def _charges(self) -> Charges:
+        return Charges(self.fleet.orders.ledger.ways, self.fleet.settings, self.fleet.spending.rates)
+
+    def _nearest_dock(self, robot: RobotRow, work: OpenWork) -> str | None:
+        return self._charges.nearest_dock(robot, free_docks(self.fleet.orders.ledger.ways, work, robot.name))
 
     def _home_of(self, robot: RobotRow) -> str | None:
         return self.fleet.campus.address_of(robot.home_bay) if robot.home_bay is not None else robot.home
@@ -114,6 +117,11 @@ def _posts(legs: Iterable[Leg]) -> tuple[str, ...]:
     """From the beginning of the first one on."""
     ways = list(legs)
     return (ways[0].from_post, *(leg.to_post for leg in ways))
+
+
+def _asked(claim: ClaimRow) -> tuple[str, ...]:
+    """All of the way that it asked for, as far as where it goes."""
+    return _posts(Leg.model_validate(leg) for leg in claim.legs)
 
 
 async def _mission(session: AsyncSession, robot: str) -> MissionRow | None:

@@ -24,10 +24,10 @@ from maps import CampusMap, CampusMapError, Corridor, Post, corridor_name, short
 
 log = structlog.get_logger(__name__)
 ASSUMED_CROSSING_S: Final = 15.0
-CHARGES_S: Final = 1800.0
-"""Less than a charge takes, and more than a hand-over."""
 """From a bay or a corridor over the crossing until the robot is wholly in what follows: what robots took in the
 simulated world with spurs of a metre, and a little more."""
+CHARGES_S: Final = 1800.0
+"""Less than a charge takes, and more than a hand-over."""
 Leg = tuple[str, str]
 """From which post to which."""
 

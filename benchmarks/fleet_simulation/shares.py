@@ -26,8 +26,8 @@ app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 @app.command()
 def shares(
     *,
-    robots: Annotated[list[int], typer.Option(min=1, help="Of one fleet; may be given again.")] = [4, 6, 8],  # noqa: B006
-    bays: Annotated[list[int], typer.Option(min=1, help="For passing, at each post; may be given again.")] = [2, 1],  # noqa: B006
+    robots: Annotated[list[int] | None, typer.Option(min=1, help="Of one fleet; 4, 6 and 8 if none.")] = None,
+    bays: Annotated[list[int] | None, typer.Option(min=1, help="For passing, at each post; 2 and 1 if none.")] = None,
     hours: Annotated[float, typer.Option(min=0.1, help="Simulated, of each run.")] = 12.0,
     seeds: Annotated[int, typer.Option(min=1, help="Of each fleet.")] = 2,
     first_seed: Annotated[int, typer.Option(help="The seeds are this one and the following.")] = 1,
@@ -36,8 +36,8 @@ def shares(
     begin_with_like_hashes()
     simulates_only()
     found = []
-    for count in robots:
-        for most in bays:
+    for count in robots or (4, 6, 8):
+        for most in bays or (2, 1):
             runs = [_compared(count, most, hours, seed) for seed in range(first_seed, first_seed + seeds)]
             together, alone = (sum(run[what] for run in runs) for what in ("together", "alone"))
             found.append({"robots": count, "bays": most, "share": round(together / (count * alone), 3), "runs": runs})

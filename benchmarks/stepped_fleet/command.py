@@ -42,15 +42,6 @@ def stepped(
     fleet = Fleet(campus, robots, scale, waiting or robots + 2, rates, CALM if calm else SHIPPED)
     figures = Run(fleet, minutes, seed).carry_out()
     command = " ".join(["python -m benchmarks.fleet stepped", *sys.argv[2:]])
-    print(
-        json.dumps(
-            {
-                "mode": f"stepped, {'calm' if calm else 'as shipped'}",
-                "code": commit(),
-                "command": command,
-                "figures": figures,
-            },
-            indent=2,
-        )
-    )
+    whereof = {"mode": f"stepped, {'calm' if calm else 'as shipped'}", "code": commit(), "command": command}
+    print(json.dumps({**whereof, "figures": figures}, indent=2))
     raise typer.Exit(bool(figures["touches"] or figures["ungranted"] or figures["astray"]))

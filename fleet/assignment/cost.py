@@ -1,7 +1,12 @@
 """Cost of a plan, in seconds of one order: how long each waits until it is given, the oldest more than they do, and
 driving; and by how much robots do what they have later than on empty corridors, since they wait for each other."""
 
+from typing import Final
+
 from fleet.assignment.problem import Rules
+
+SLACK_S: Final = 1e-3
+"""Sums of times are not exact."""
 
 
 def latency_s(rules: Rules, weight: float, seconds: float) -> float:

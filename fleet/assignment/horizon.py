@@ -11,7 +11,7 @@ from math import inf
 from random import Random
 from typing import Final, NamedTuple
 
-from fleet.assignment.cost import latency_s
+from fleet.assignment.cost import SLACK_S, latency_s
 from fleet.assignment.problem import AssignmentProblem, OpenOrder, Route, Routes
 from fleet.assignment.turns import Place, Turns, Waiting, waiting
 from fleet.schedule.planning import Schedule
@@ -28,7 +28,6 @@ NOT_SOON_S: Final = 4 * 3600.0
 """Assumed until an order that comes in no turn is given."""
 BLURS_S: Final = (60.0, 300.0, 900.0)
 """Up to one of these an order with a robot costs more than it does, where another answer is wanted."""
-SLACK_S: Final = 1e-3
 
 
 class Outlook(NamedTuple):

@@ -10,11 +10,12 @@ from dataclasses import replace
 from random import Random
 from typing import Final
 
+from fleet.assignment.cost import SLACK_S
 from fleet.assignment.deciding import Decision
 from fleet.assignment.horizon import Outlook, look_ahead
 from fleet.assignment.problem import AssignmentProblem, Route
 from fleet.assignment.routes import movable, without
-from fleet.assignment.timing import SLACK_S, Timed, in_order, keeps_promises, overdue_s, sound, tasks_of
+from fleet.assignment.timing import Timed, in_order, keeps_promises, overdue_s, sound, tasks_of
 from fleet.schedule.planning import Schedule, improve, plan
 
 RESHUFFLES: Final = 6

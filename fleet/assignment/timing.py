@@ -4,15 +4,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from random import Random
-from typing import Final
 
+from fleet.assignment.cost import SLACK_S
 from fleet.assignment.problem import AssignmentProblem, Kept, Routes
 from fleet.schedule.journey import Journey, Task
 from fleet.schedule.planning import Schedule, Tasks, first_plan, insert, plan
 from fleet.schedule.validation import problems
-
-SLACK_S: Final = 1e-3
-"""Sums of times are not exact."""
 
 
 @dataclass(frozen=True, slots=True)
