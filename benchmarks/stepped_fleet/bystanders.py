@@ -36,8 +36,7 @@ class Bystanders:
 
     async def tick(self, robots: list[SteppedRobot], now: float) -> None:
         for robot in robots:
-            if robot.is_on:
-                self._listen(robot)
+            self._listen(robot)
         by_name = {robot.name: robot for robot in robots if robot.is_on}
         for order in await self._at_stops():
             robot = by_name.get(order.robot or "")

@@ -216,7 +216,7 @@ class DriveLoop:
         self._faults, self._stopping = decision.faults, decision.stopping
         if "bump" in new:
             self._bumps += 1
-            self._wheels.beep()
+            self._wheels.beep(now)
         for name in new & reflexes.STOPPING:
             self._black_box.write_at(now + DUMP_AFTER_S, name)
 

@@ -31,7 +31,7 @@ class Wheels:
                 self._mode = Mode.PASSIVE
                 self._base.seek_dock(now)
             case Play(notes):
-                self._speaker.say(notes)
+                self._speaker.say(notes, now)
             case ShowLights(colour, brightness):
                 self._base.show_lights(colour, brightness, now)
 
@@ -67,8 +67,8 @@ class Wheels:
     def not_at_rest(self, now: float) -> None:
         self._docked_s = now
 
-    def beep(self) -> None:
-        self._speaker.say(BUMPED)
+    def beep(self, now: float) -> None:
+        self._speaker.say(BUMPED, now)
 
     def sound(self, state: BaseState | None, now: float) -> None:
         """Every tick: what waits to be heard."""
