@@ -77,6 +77,15 @@ class Network:
         through a post without a bay."""
         return tuple(_shortest_from(start, self) for start in range(len(self.posts)))
 
+    def next_post(self, post: int, goal: int) -> int:
+        """The next one on the quickest way on empty corridors. Raises ValueError where no way leads."""
+        shortest_s, crossing_s = self.shortest_s, self.crossing_s
+        ways = ((crossing_s[post] + lane.travel_s + shortest_s[lane.end][goal], lane.end) for lane in self.lanes[post])
+        least_s, end = min(ways, default=(inf, post))
+        if least_s == inf:
+            raise ValueError(f"no way leads from {self.posts[post]} to {self.posts[goal]}")
+        return end
+
     def without(self, closed: Collection[str], shut: Collection[int] = ()) -> "Network":
         """The same with some corridors closed, named as the map names them, and the crossings of some posts shut."""
         closed_too = {number for number, name in enumerate(self.corridors) if name in closed}

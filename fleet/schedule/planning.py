@@ -13,6 +13,7 @@ from typing import Final
 
 from fleet.schedule.evacuation import evacuate
 from fleet.schedule.journey import Journey, Task, standing
+from fleet.schedule.neighbourhood import neighbourhood
 from fleet.schedule.network import Network
 from fleet.schedule.occupied import Occupied
 from fleet.schedule.search import find_work
@@ -20,7 +21,6 @@ from fleet.schedule.ways_home import WaysHome
 
 Tasks = Mapping[str, Task]
 Journeys = Mapping[str, Journey]
-SOME_OF: Final = 4
 WORTH_S: Final = 1e-3
 """What is better by less is not better: sums of times are not exact."""
 
@@ -211,7 +211,7 @@ def improve(
 ) -> Schedule:
     """The best schedule found while it goes on: some robots or all are planned again in another order."""
     while best.order and go_on():
-        order = _another_order(best.order, rng)
+        order = neighbourhood(network, tasks, best.journeys, best.order, rng)
         found = plan(network, tasks, order, best.journeys, best.cost_s - worth_s, pause)
         if found is not None:
             left = [robot for robot in best.order if robot not in found.order]
@@ -229,16 +229,3 @@ def _taken_on_the_way(network: Network, tasks: Tasks) -> Occupied:
         for post, until_s in task.start.crossings():
             taken.cross(f"{robot} on its way", post, task.start.entered_s, until_s)
     return taken
-
-
-def _another_order(order: Sequence[str], rng: Random) -> list[str]:
-    """Return the robots with one of them elsewhere in the order, or shuffled; of many also some few."""
-    chosen = list(order)
-    if len(chosen) > SOME_OF and rng.random() < 0.5:
-        return rng.sample(chosen, rng.randint(2, SOME_OF))
-    if rng.random() < 0.6:
-        moved = chosen.pop(rng.randrange(len(chosen)))
-        chosen.insert(rng.randrange(len(chosen) + 1), moved)
-    else:
-        rng.shuffle(chosen)
-    return chosen
