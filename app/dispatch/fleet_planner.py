@@ -22,6 +22,7 @@ from app.robots.service import Fleet
 from app.traffic.schedule import TrafficSchedule
 from app.traffic.service import TrafficService
 from fleet.assignment.adopting import adopt
+from fleet.assignment.cost import SLACK_S
 from fleet.assignment.deciding import Decision, decide
 
 IMPROVE_EVERY_S: Final = 30.0
@@ -136,12 +137,25 @@ class FleetPlanner:
         if decision is None:
             return False
         better = await self._improved(decision)
-        changes = changes_of(work, better)
-        if not changes or self._stopped.is_set():
+        if self._stopped.is_set():
             return False
+        changes = changes_of(work, better)
+        if not changes:
+            return self._goes_by_now(schedule, decision, better)
         is_written = await self._carry_out(schedule, better, changes)
         log.info("improved", is_written=is_written, taken=len(changes.taken), saves_s=decision.cost_s - better.cost_s)
         return is_written
+
+    def _goes_by_now(self, schedule: TrafficSchedule, decision: Decision, better: Decision) -> bool:
+        """Every order stays with its robot, and only the timetable is another: nothing of that is written down."""
+        is_better = better.cost_s < decision.cost_s - SLACK_S
+        if not is_better or schedule is not self._desk.schedule:
+            return False
+        is_adopted = adopt(schedule.controller, better, schedule.known, self._fleet.clock.now())
+        if is_adopted:
+            self._desk.wake()
+            log.info("timetable_improved", saves_s=decision.cost_s - better.cost_s)
+        return is_adopted
 
     async def _improved(self, decision: Decision) -> Decision:
         """The same, if there is nothing to choose from."""

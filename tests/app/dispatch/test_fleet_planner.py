@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack
 from dataclasses import replace
 from datetime import timedelta
+from itertools import permutations
 
 import pytest
 
@@ -15,6 +16,7 @@ from app.orders.views.schemas import NewOrder
 from fleet.assignment.deciding import Decision
 from fleet.assignment.problem import Routes
 from fleet.assignment.routes import room
+from fleet.schedule.planning import plan
 from protocol.clock import SteppedClock
 from protocol.parts import Activity, Battery
 from protocol.to_robot import Cancel
@@ -292,3 +294,22 @@ async def test_who_waits_for_robots_that_need_help_is_told_so_and_no_time(
     await waits_because(service, order_id, "Every robot that could fetch it has stopped and needs help.")
     order = await service.row(Order, id=order_id)
     assert (order.expected_from, order.expected_to) == (None, None)
+
+
+async def test_a_better_timetable_is_gone_by_though_every_order_stays_with_its_robot(
+    service: Service, robots: tuple[PlayedRobot, PlayedRobot]
+) -> None:
+    for name, start, end in (("r1", "post1", "post5"), ("r2", "post3", "post4")):
+        await order_with(service, name, start, end)
+        await until(lambda name=name: goals(service, name))
+    state = service.app.state.parts
+    controller, now_s = state.traffic_service.schedule.controller, state.clock.now()
+    tasks, before = controller.tasks(now_s), await service.rows(MissionRow)
+    plans = [plan(controller.network, tasks, order) for order in permutations(tasks)]
+    best, worst = sorted((one for one in plans if one is not None), key=lambda one: one.cost_s)
+    assert controller.adopt({}, worst, now_s)
+    await state.planner.improve()
+    took_s = sum(journey.done_s for journey in controller.journeys(now_s).values())
+    assert took_s == pytest.approx(best.cost_s)
+    assert took_s < worst.cost_s
+    assert await service.rows(MissionRow) == before
