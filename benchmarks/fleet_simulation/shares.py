@@ -1,11 +1,12 @@
-"""Throughput as a share of what the same robots would deliver each alone on the campus: the price of single lines.
+"""Throughput as a share of what the same robots would deliver that could pass through each other.
 
 python -m benchmarks.fleet shares --robots 4 --bays 2 --seeds 3
 """
 
 import json
 import sys
-from dataclasses import replace
+import tempfile
+from pathlib import Path
 from typing import Annotated, Any, Final
 
 import typer
@@ -16,10 +17,15 @@ from benchmarks.fleet_simulation.grounds import Ground
 from benchmarks.fleet_simulation.people import WITH_RECIPIENT
 from benchmarks.fleet_simulation.process import simulates_only
 from benchmarks.fleet_simulation.service import CALM
-from benchmarks.fleet_simulation.simulation import Fleet, Run
+from benchmarks.fleet_simulation.simulation import Fleet, Run, homes
+from benchmarks.fleet_simulation.unhindered import Unhindered
 
 LASTS: Final = 1000.0
-"""Times as long as usual: what charging costs is another question."""
+"""Times as long as usual, and full at first: what charging costs is another question."""
+FREE: Final = 5
+"""So many orders always wait beyond those that robots go for."""
+ROUNDS: Final = 60
+"""Of improvement, for each plan: fewer than there is time for in the shipped budget."""
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
 
@@ -32,31 +38,32 @@ def shares(
     seeds: Annotated[int, typer.Option(min=1, help="Of each fleet.")] = 2,
     first_seed: Annotated[int, typer.Option(help="The seeds are this one and the following.")] = 1,
 ) -> None:
-    """Deliver with as many orders always waiting as there are robots, and five; all together, and one robot alone."""
+    """Deliver one letter at a time with always five orders more than robots waiting; beside it what the nearest-order
+    rule delivers without conflicts."""
     begin_with_like_hashes()
     simulates_only()
     found = []
     for count in robots or (4, 6, 8):
         for most in bays or (2, 1):
             runs = [_compared(count, most, hours, seed) for seed in range(first_seed, first_seed + seeds)]
-            together, alone = (sum(run[what] for run in runs) for what in ("together", "alone"))
-            found.append({"robots": count, "bays": most, "share": round(together / (count * alone), 3), "runs": runs})
-            print(f"{count} robots, {most} bays: {together / (count * alone):.3f}", file=sys.stderr)
+            share = sum(run["delivered"] for run in runs) / sum(run["unhindered"] for run in runs)
+            found.append({"robots": count, "bays": most, "share": round(share, 3), "runs": runs})
+            print(f"{count} robots, {most} bays: {share:.3f}", file=sys.stderr)
     command = " ".join(["python -m benchmarks.fleet shares", *sys.argv[2:]])
-    whereof = {"mode": "schedule, calm; packs never empty", "code": commit(), "command": command}
-    print(json.dumps({**whereof, "figures": found}, indent=2))
+    mode = f"schedule, calm, {ROUNDS} rounds for each plan; packs never empty"
+    print(json.dumps({"mode": mode, "code": commit(), "command": command, "figures": found}, indent=2))
 
 
 def _compared(robots: int, bays: int, hours: float, seed: int) -> dict[str, Any]:
-    """Letters an hour."""
-    fleet = Fleet(robots, Ground(bays=bays), lasts=LASTS, demand=Saturated(robots + 5), pace=CALM)
+    """Orders delivered: by the service's fleet, and without conflicts."""
+    ground = Ground(bays=bays)
+    demand = Saturated(robots + FREE)
+    fleet = Fleet(robots, ground, capacity=1, lasts=LASTS, rounds=ROUNDS, demand=demand, pace=CALM)
+    letters = Run(fleet, hours, seed).carry_out().people.letters
+    with tempfile.TemporaryDirectory() as folder:
+        campus = ground.read(Path(folder))
     return {
         "seed": seed,
-        "together": _delivered_an_hour(fleet, hours, seed),
-        "alone": _delivered_an_hour(replace(fleet, robots=1), hours, seed),
+        "delivered": sum(place == WITH_RECIPIENT for place in letters.values()),
+        "unhindered": Unhindered(campus, FREE, seed).delivered(homes(campus, robots), hours),
     }
-
-
-def _delivered_an_hour(fleet: Fleet, hours: float, seed: int) -> float:
-    letters = Run(fleet, hours, seed).carry_out().people.letters
-    return round(sum(place == WITH_RECIPIENT for place in letters.values()) / hours, 3)

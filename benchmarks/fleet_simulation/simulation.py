@@ -137,6 +137,8 @@ class Run:
         campus, clock, judge, taking = world
         pack = some_pack(self._rng(f"{name} pack"))
         pack.capacity_mah, pack.charger_ma = pack.capacity_mah * self.fleet.lasts, pack.charger_ma * self.fleet.lasts
+        if self.fleet.lasts > 1.0:  # else it would charge for days what it had not at first
+            pack.ratio = 1.0
         body = Body(name, home, campus.track, taking, judge, pack, self._rng(f"{name} body"))
         begins_at_home(body)
         network = Network(service.serve, await service.enrol(name), self._rng(f"{name} network"))
