@@ -48,7 +48,7 @@ async def test_a_lone_robot_goes_to_a_bay_and_home(service: Service, clock: Step
 async def test_three_robots_never_meet_and_all_arrive(service: Service, clock: SteppedClock, seed: int) -> None:
     floor, random = Floor(), Random(seed)
     robots = travellers(clock, floor)
-    ways = [[random.choice(POSTS) for _ in range(6)] for _ in robots]
+    ways = [[random.choice(POSTS) for _ in range(4)] for _ in robots]
     async with AsyncExitStack() as stack:
         for one in robots:
             await stack.enter_async_context(one.greeted(service))
