@@ -308,8 +308,12 @@ async def test_a_better_timetable_is_gone_by_though_every_order_stays_with_its_r
     plans = [plan(controller.network, tasks, order) for order in permutations(tasks)]
     best, worst = sorted((one for one in plans if one is not None), key=lambda one: one.cost_s)
     assert controller.adopt({}, worst, now_s)
-    await state.planner.improve()
-    took_s = sum(journey.done_s for journey in controller.journeys(now_s).values())
-    assert took_s == pytest.approx(best.cost_s)
-    assert took_s < worst.cost_s
+    assert best.cost_s < worst.cost_s
+
+    async def goes_by_the_best() -> bool:
+        await state.planner.improve()  # on a busy machine its time may be over before it has begun
+        took_s = sum(journey.done_s for journey in controller.journeys(now_s).values())
+        return took_s == pytest.approx(best.cost_s)
+
+    await until(goes_by_the_best)
     assert await service.rows(MissionRow) == before
