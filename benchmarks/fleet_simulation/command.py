@@ -18,7 +18,7 @@ from benchmarks.fleet_simulation.faults import MANY, NONE
 from benchmarks.fleet_simulation.figures import figures
 from benchmarks.fleet_simulation.grounds import Ground
 from benchmarks.fleet_simulation.process import simulates_only
-from benchmarks.fleet_simulation.service import CALM, SHIPPED
+from benchmarks.fleet_simulation.service import CALM, ROUNDS, SHIPPED
 from benchmarks.fleet_simulation.simulation import Fleet, Run
 
 ROOT: Final = Path(__file__).parents[2]
@@ -37,7 +37,7 @@ def simulate(
     orders_a_day: Annotated[float, typer.Option(min=0.0, help="In rush hours, instead of those.")] = 0.0,
     capacity: Annotated[int, typer.Option(min=1, help="Items that a robot carries.")] = 2,
     packs_last: Annotated[float, typer.Option(min=0.1, help="So many times as long as usual.")] = 1.0,
-    rounds: Annotated[int, typer.Option(min=0, help="Of improvement of each plan.")] = 3,
+    rounds: Annotated[int, typer.Option(min=0, help="Of improvement of each plan.")] = ROUNDS,
     faults: Annotated[bool, typer.Option(help="Kills, cuts, lifts, deaths, closures.")] = False,
     calm: Annotated[bool, typer.Option(help="Look less often at what only time changes: for long runs.")] = False,
 ) -> None:
@@ -50,12 +50,12 @@ def simulate(
         robots, ground, capacity, packs_last, rounds, MANY if faults else NONE, demand, CALM if calm else SHIPPED
     )
     found = figures(Run(fleet, hours, seed).carry_out(), robots)
-    print(json.dumps({**_whereof(calm, seed), "figures": found}, indent=2))
+    print(json.dumps({**_whereof(calm, rounds, seed), "figures": found}, indent=2))
 
 
-def _whereof(calm: bool, seed: int) -> dict[str, Any]:
+def _whereof(calm: bool, rounds: int, seed: int) -> dict[str, Any]:
     return {
-        "mode": f"schedule, {'calm' if calm else 'as shipped'}",
+        "mode": f"schedule, {'calm' if calm else 'as shipped'}, {rounds} rounds for each plan",
         "code": commit(),
         "command": " ".join(["python -m benchmarks.fleet simulate", *sys.argv[2:]]),
         "seed": seed,

@@ -27,6 +27,8 @@ from fleet.assignment.improving import improved
 from protocol.clock import Clock
 
 MEMORY: Final = Path("/dev/shm")  # noqa: S108  # a file system in memory, where there is one
+ROUNDS: Final = 60
+"""Of improvement, for each plan: for more there is time in the shipped budget."""
 TIMER_EVERY_S: Final = 60.0
 """The product looks each second for what only time changes; here what is late is late by minutes."""
 T = TypeVar("T")

@@ -16,7 +16,7 @@ from benchmarks.fleet_simulation.demand import Saturated
 from benchmarks.fleet_simulation.grounds import Ground
 from benchmarks.fleet_simulation.people import WITH_RECIPIENT
 from benchmarks.fleet_simulation.process import simulates_only
-from benchmarks.fleet_simulation.service import CALM
+from benchmarks.fleet_simulation.service import CALM, ROUNDS
 from benchmarks.fleet_simulation.simulation import Fleet, Run, homes
 from benchmarks.fleet_simulation.unhindered import Unhindered
 
@@ -24,8 +24,6 @@ LASTS: Final = 1000.0
 """Times as long as usual, and full at first: what charging costs is another question."""
 FREE: Final = 5
 """So many orders always wait beyond those that robots go for."""
-ROUNDS: Final = 60
-"""Of improvement, for each plan: fewer than there is time for in the shipped budget."""
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
 

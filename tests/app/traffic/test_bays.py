@@ -44,7 +44,7 @@ async def test_a_lone_robot_goes_to_a_bay_and_home(service: Service, clock: Step
         await until(holds_nothing)
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.nightly) for seed in (2, 3))])
 async def test_three_robots_never_meet_and_all_arrive(service: Service, clock: SteppedClock, seed: int) -> None:
     floor, random = Floor(), Random(seed)
     robots = travellers(clock, floor)

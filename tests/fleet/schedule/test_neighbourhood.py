@@ -3,6 +3,7 @@
 from collections import Counter
 from random import Random
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -55,3 +56,22 @@ def test_where_nothing_is_late_any_robot_is_planned_again() -> None:
         name for _ in range(DRAWN) for name in neighbourhood(network, tasks, found.journeys, found.order, rng)
     )
     assert min(seen.values()) > 0.9 * max(seen.values())
+
+
+@given(st.randoms(use_true_random=False), st.booleans())
+def test_from_post_to_next_post_it_takes_as_long_as_the_quickest_way(rng: Random, crossing: bool) -> None:
+    network = random_network(rng, crossing=crossing)
+    start, goal = rng.randrange(len(network.posts)), rng.randrange(len(network.posts))
+    at, took_s = start, 0.0
+    while at != goal:
+        following = network.next_post(at, goal)
+        took_s += network.takes_s(network.lane(at, following))
+        at = following
+    arrives_s = network.crossing_s[goal] if goal != start else 0.0
+    assert took_s + arrives_s == pytest.approx(network.shortest_s[start][goal])
+
+
+def test_where_no_way_leads_there_is_no_next_post() -> None:
+    network = street(3).without({street(3).corridors[1]})
+    with pytest.raises(ValueError, match=f"no way leads from {network.posts[0]} to {network.posts[2]}"):
+        network.next_post(0, 2)
