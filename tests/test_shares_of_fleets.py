@@ -1,6 +1,7 @@
 """What fleets are compared with: robots that pass through each other, by the table of durations and the map alone."""
 
 from pathlib import Path
+from random import Random
 
 import pytest
 
@@ -8,7 +9,7 @@ from benchmarks.fleet_simulation.durations import FITTED
 from benchmarks.fleet_simulation.grounds import Ground
 from benchmarks.fleet_simulation.simulation import homes
 from benchmarks.fleet_simulation.unhindered import Unhindered
-from maps import CampusMap
+from maps import CampusMap, shortest_route
 
 
 @pytest.fixture(scope="module")
@@ -35,3 +36,15 @@ def test_twice_as_many_robots_and_hours_deliver_about_twice_as_much(campus: Camp
 def test_the_nearest_order_is_fetched_so_that_more_to_choose_from_is_more_delivered(campus: CampusMap) -> None:
     few, many = (Unhindered(campus, free, 1).delivered(homes(campus, 4), 48.0) for free in (1, 9))
     assert many > 1.2 * few
+
+
+def test_one_robot_that_cannot_choose_takes_all_its_time_for_ways_and_people(campus: CampusMap) -> None:
+    hours, at, metres = 96.0, campus.track.address_of(homes(campus, 1)[0]), 0.0
+    count = Unhindered(campus, 1, 1).delivered(homes(campus, 1), hours)
+    coming = Random("1 orders")
+    for _ in range(count):
+        start, end = coming.sample(sorted(campus.posts), 2)
+        metres += shortest_route(campus, at, start).length_m + shortest_route(campus, start, end).length_m
+        at = end
+    left_s = hours * 3600.0 - metres / FITTED.speed_m_s
+    assert 250.0 < left_s / count < 500.0, "people take 200 s for an order, moves at posts the rest"

@@ -64,7 +64,7 @@ class Bystanders:
             self._showing[robot.name] = order_id, purpose
 
     def _listen(self, robot: SteppedRobot) -> None:
-        """At the tune that says yes the letter changes hands."""
+        """At the tune that says yes the letter changes hands, also if the robot was switched off right after it."""
         heard = list(robot.heard())
         if "accepted" in heard and robot.name in self._showing:
             self.people.show(robot.name, *self._showing.pop(robot.name))

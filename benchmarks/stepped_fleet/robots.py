@@ -63,7 +63,6 @@ class SteppedRobot:
     _loops: tuple[Loop, ...] = ()
     _talk: asyncio.Task[None] | None = None
     _songs: int = 0
-    _unheard: list[str] = field(default_factory=list)
 
     @property
     def body(self) -> SimulatedRobot:
@@ -109,7 +108,6 @@ class SteppedRobot:
 
     def kill(self) -> None:
         """Its computer has stopped: nothing is said any more, and its wheels have stopped (assumed: at once)."""
-        self._unheard = list(self.heard())
         self._loops, self._due = (), []
         if self._talk is not None:
             self._talk.cancel()
@@ -141,7 +139,6 @@ class SteppedRobot:
         self.stands_since_s = None if moving else self.stands_since_s or now
 
     def heard(self) -> Iterator[str]:
-        """The tunes since the last call, those before a kill among them."""
+        """The tunes since the last call."""
         self._songs, tunes = self.body.tunes_since(self._songs)
-        unheard, self._unheard = self._unheard, []
-        yield from (*unheard, *(NAMES.get(tune, "?") for tune in tunes))
+        yield from (NAMES.get(tune, "?") for tune in tunes)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fleet.schedule.journey import Goal, Start, Task
-from fleet.schedule.neighbourhood import FIRST, LATE, SOME_OF, neighbourhood
+from fleet.schedule.neighbourhood import SOME_OF, neighbourhood
 from fleet.schedule.planning import plan
 from tests.app.dispatch.test_fleet_plan import street
 from tests.fleet.schedule.test_schedules import planned, random_network, random_tasks
@@ -40,7 +40,7 @@ def test_the_late_one_goes_first_most_often_together_with_the_one_that_it_waits_
     rng = Random(1)
     drawn = [neighbourhood(network, tasks, found.journeys, found.order, rng) for _ in range(DRAWN)]
     led = [again for again in drawn if again[0] == "late" and len(again) <= SOME_OF]
-    assert len(led) > 0.9 * LATE * FIRST * DRAWN
+    assert len(led) > 0.3 * DRAWN
     seen = Counter(name for again in led for name in again[1:])
     assert seen["meets"] > 0.9 * len(led)
     assert max(Counter(name for again in drawn for name in again).values()) < DRAWN, "any other has its turn as well"
