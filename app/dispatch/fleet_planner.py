@@ -23,7 +23,7 @@ from app.traffic.schedule import TrafficSchedule
 from app.traffic.service import TrafficService
 from fleet.assignment.adopting import adopt
 from fleet.assignment.cost import SLACK_S
-from fleet.assignment.deciding import Decision, decide
+from fleet.assignment.deciding import Decision
 
 IMPROVE_EVERY_S: Final = 30.0
 """Real seconds. Also when nothing was given: robots have moved since."""
@@ -59,7 +59,7 @@ class FleetPlanner:
         """Give waiting orders to robots; whether to look again at once, since what was decided on has changed."""
         work, schedule = await self._look(), self._desk.schedule
         waiting = [order.id for order in work.waiting]
-        decision = self._decide(work, schedule) if schedule is not None and work.connected else None
+        decision = await self._decide(work, schedule) if schedule is not None and work.connected else None
         changes = changes_of(work, decision) if decision is not None else None
         if decision is not None and changes and not await self._carry_out(schedule, decision, changes):
             return True
@@ -77,9 +77,10 @@ class FleetPlanner:
         async with self._fleet.database.reading() as session:
             return await read_open_work(session, self._fleet.clock.utc())
 
-    def _decide(self, work: OpenWork, schedule: TrafficSchedule) -> Decision | None:
+    async def _decide(self, work: OpenWork, schedule: TrafficSchedule) -> Decision | None:
         clock = self._fleet.clock
-        return decide(self._scenes.of(work, schedule.controller, clock.utc(), clock.now()), self._rng)
+        problem = self._scenes.of(work, schedule.controller, clock.utc(), clock.now())
+        return await self._process.decided(problem, self._rng)
 
     async def _carry_out(self, schedule: TrafficSchedule | None, decision: Decision, changes: Changes) -> bool:
         """False if it does not hold any more."""
@@ -133,7 +134,7 @@ class FleetPlanner:
         if schedule is None:
             return False
         work = await self._look()
-        decision = self._decide(work, schedule)
+        decision = await self._decide(work, schedule)
         if decision is None:
             return False
         better = await self._improved(decision)

@@ -1,6 +1,7 @@
-"""Better decisions are looked for in a process of their own, so that neither robots nor people wait for it.
+"""Decisions are made beside the event loop, so that neither robots nor people wait for them: the first answer in a
+thread, and better ones in a process of their own.
 
-It is a luxury: a process that has died or answers too late is ended, and the next question starts another one.
+Those are a luxury: a process that has died or answers too late is ended, and the next question starts another one.
 """
 
 import asyncio
@@ -17,8 +18,9 @@ from typing import BinaryIO, Final
 
 import structlog
 
-from fleet.assignment.deciding import Decision
+from fleet.assignment.deciding import Decision, decide
 from fleet.assignment.improving import improved, within
+from fleet.assignment.problem import AssignmentProblem
 
 GRACE_S: Final = 2.0
 """So much longer than its budget an answer may take."""
@@ -39,6 +41,10 @@ class PlannerProcess:
     def process_id(self) -> int | None:
         """Of the process that was asked last, if there is one."""
         return self._process.pid if self._process is not None else None
+
+    async def decided(self, problem: AssignmentProblem, rng: random.Random) -> Decision | None:
+        """The first answer, as `decide` gives it."""
+        return await asyncio.to_thread(decide, problem, rng)
 
     async def improved(self, decision: Decision, budget_s: float) -> Decision | None:
         """The best that was found within the budget; None if the process has failed."""

@@ -220,7 +220,7 @@ async def test_what_was_decided_on_a_world_that_has_changed_is_not_written(
     await order_with(service, "r1", "post1", "post3")
     planner = state.planner
     work = await planner._look()
-    decision = planner._decide(work, state.traffic_service.schedule)
+    decision = await planner._decide(work, state.traffic_service.schedule)
     assert decision is not None
     turned = {name: tuple(reversed(route)) for name, route in decision.routes.items()}
     changes = changes_of(work, _with_routes(decision, turned))
@@ -241,7 +241,7 @@ async def test_no_mail_is_given_before_it_is_loaded_when_no_way_leads_to_where_i
     await until(lambda: _all_have_robots(service))
     planner = state.planner
     work = await planner._look()
-    decision = planner._decide(work, state.traffic_service.schedule)
+    decision = await planner._decide(work, state.traffic_service.schedule)
     assert decision is not None
     (name,) = {stop.robot for stop in work.of_orders[order_id]}
     load, give = work.of_orders[order_id]

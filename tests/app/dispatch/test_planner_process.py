@@ -1,13 +1,18 @@
-"""The planner process: its plans are as good as those made in the service, and no caller waits for it in vain."""
+"""The planner beside the event loop: as good as one made in it, and no caller waits for it in vain."""
 
 import os
 import signal
+import threading
 from collections.abc import AsyncIterator
+from dataclasses import replace
+from random import Random
+from typing import Any, ClassVar
 
 import pytest
 
 from app.dispatch.planner_process import PlannerProcess
 from fleet.assignment.deciding import Decision
+from fleet.assignment.problem import OpenOrder
 from tests.app.dispatch.fleet_life import order
 from tests.app.dispatch.test_fleet_plan import decided, problem_of, robot, street
 
@@ -34,6 +39,25 @@ async def test_it_finds_a_plan_that_serves_the_same_orders_and_is_no_dearer(
     assert better is not None
     assert better.robot_of().keys() == decision.robot_of().keys()
     assert better.cost_s <= decision.cost_s
+
+
+class Asked(dict[str, OpenOrder]):
+    """Orders that know which threads looked at them."""
+
+    threads: ClassVar[set[int]] = set()
+
+    def values(self) -> Any:
+        self.threads.add(threading.get_ident())
+        return super().values()
+
+
+async def test_the_first_answer_is_made_beside_the_event_loop(process: PlannerProcess, decision: Decision) -> None:
+    problem = replace(decision.problem, orders=Asked(decision.problem.orders))
+    first = await process.decided(problem, Random(0))
+    assert first is not None
+    assert first.robot_of() == decision.robot_of()
+    assert Asked.threads
+    assert threading.get_ident() not in Asked.threads
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP], ids=["dies", "hangs"])
