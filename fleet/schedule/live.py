@@ -33,6 +33,7 @@ class LiveSchedule:
         self.robots: dict[str, Participant] = {}
         self.planned: dict[str, Journey] = {}
         self._rng = rng
+        self._last: tuple[Network, dict[str, Task], dict[str, Journey], dict[str, Journey]] | None = None
 
     def tasks(self, now_s: float) -> dict[str, Task]:
         """Every robot that can be planned for, as it is now: of its goals those that can be reached."""
@@ -120,7 +121,10 @@ class LiveSchedule:
         return one_behind_the_other(tasks)
 
     def _retimed(self, tasks: Mapping[str, Task]) -> dict[str, Journey]:
-        return retimed(self.network, tasks, self.planned)
+        """At one moment the same is asked for again and again, by each robot that waits: the last answer is kept."""
+        if self._last is None or self._last[0] is not self.network or self._last[1:3] != (tasks, self.planned):
+            self._last = self.network, dict(tasks), dict(self.planned), retimed(self.network, tasks, self.planned)
+        return dict(self._last[3])
 
     def _open(self, now_s: float) -> None:
         turn_round(self.whole, self.robots, now_s)
