@@ -1,22 +1,27 @@
 """The benchmark of the fleet runs, and what it prints can be read. Full samples are for a quiet machine."""
 
+import asyncio
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
 
 from benchmarks.body.report import missed
-from benchmarks.fleet import throughput
+from benchmarks.fleet import campus
 from benchmarks.fleet.__main__ import PARTS
-from benchmarks.fleet.assigning import Rule
-from benchmarks.fleet.claimants import Campus, Faults
-from benchmarks.fleet.grounds import track
-from benchmarks.fleet.never_stuck import CASES, FAULTS, Case, Run, look_at
-from benchmarks.fleet.world import CollisionError
+from benchmarks.fleet.decisions import Watched
+from benchmarks.fleet_simulation.beside_vroom import compared
+from benchmarks.fleet_simulation.honeycomb import Honeycomb
+from maps import read_map
+from maps.check import check_file
+from tests.app.dispatch.fleet_life import order
+from tests.app.dispatch.test_fleet_plan import problem_of, robot, street
 
 CHECKOUT = Path(__file__).parents[1]
 
@@ -31,8 +36,8 @@ def test_every_part_can_be_loaded_and_says_what_is_wanted_of_it(name: str) -> No
 
 
 @pytest.mark.slow
-def test_a_part_measures_every_figure_that_it_is_judged_by(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "benchmarks.fleet", "every_map", "--posts", "2", "--plots", str(tmp_path)]
+def test_a_part_measures_every_figure_that_it_is_judged_by() -> None:
+    command = [sys.executable, "-m", "benchmarks.fleet", "every_map", "--posts", "2"]
     finished = subprocess.run(command, cwd=CHECKOUT, capture_output=True, text=True, check=False)
     report: dict[str, Any] = json.loads(finished.stdout)["parts"]
     assert "failed" not in report["every_map"], finished.stderr
@@ -42,55 +47,60 @@ def test_a_part_measures_every_figure_that_it_is_judged_by(tmp_path: Path) -> No
     assert "measured" in finished.stderr, "people get a table"
 
 
-@pytest.mark.parametrize(
-    "case", CASES, ids=lambda case: f"{case.ground}-{case.robots}-{case.bays}{'-planner' * case.planner}"
-)
+@pytest.mark.parametrize("name", campus.FLEETS)
 @pytest.mark.nightly
-def test_no_robot_is_stuck_and_no_order_forgotten_while_robots_die_and_corridors_are_closed(case: Case) -> None:
-    """Twelve hours of each; a hundred thousand robot-hours in `make bench-fleet ARGS="never_stuck"`."""
-    seen = look_at(Run(case, seed=3, hours=12.0, faults=FAULTS, far=True))
-    assert (seen.stuck, seen.met, seen.too_old) == (0, 0, 0)
-    assert seen.robot_hours == 12.0 * case.robots
-    assert seen.delivered > 6 * case.robots
-    assert (seen.let_in_ahead > 0) == (case.following_s is None), (
-        "behind each other the order is only known when they go in"
-    )
+def test_no_robot_is_stuck_and_none_meets_another_while_robots_die_and_corridors_are_closed(name: str) -> None:
+    """A working day of each; weeks in `make bench-fleet ARGS="campus"`."""
+    seen = campus.look_at((name, 3, 18.0))
+    assert (seen["met"], seen["stuck"], seen["astray"]) == ({}, 0, [])
+    assert seen["delivered"] > 0
 
 
-def test_robots_that_meet_or_find_no_bay_would_be_seen() -> None:
-    def campus() -> Campus:
-        return Campus(track(), robots=3, seed=1, faults=Faults(), age_limit_s=3600.0)
-
-    meeting = campus()
-    there, back = meeting.network.lane(4, 2), meeting.network.lane(2, 4)
-    meeting.robots["r0"].lane = there
-    with pytest.raises(CollisionError, match="r1 meets another"):
-        meeting.look_for_others(meeting.robots["r1"], back)
-    full = campus()
-    full.robots["r0"].post, full.robots["r0"].at_home = 2, False
-    full.controller.joins("r0", post="post3", home="post5", at_home=False, now_s=0.0)
-    full.controller.joins("r1", post="post2", home="post5", at_home=False, now_s=0.0)
-    with pytest.raises(CollisionError, match="r1 finds no bay at post3"):
-        full.look_for_others(full.robots["r1"], full.network.lane(1, 2))
-
-
-@pytest.mark.slow
-def test_in_the_tunnels_most_of_what_could_be_delivered_without_conflicts_is() -> None:
-    run_ = throughput.run((throughput.Case(4, 2, Rule("quickest", orders=3, rounds=3), spread=0.2), 1, 24.0))
-    assert run_.refused == 0
-    assert run_.delivered > 0.85 * run_.same_rule
-    assert run_.delivered > run_.first_come
-    assert run_.of_orders_taken is not None
-    assert 0.85 < run_.of_orders_taken < 1.0
+def test_runs_of_one_fleet_are_told_together() -> None:
+    run = dict.fromkeys(campus.ADDED, 1) | {
+        "met": {"corridor": 1},
+        "meetings": ["r1 and r2"],
+        "astray": ["an order"],
+        "befallen": {"killed": 2},
+        "order_to_delivered_s": {"count": 1},
+        "processor_s": 1.0,
+    }
+    told = [{"scored": 3, "inside": 1.0, "median_error": 0.1}, {"scored": 1, "inside": 0.0, "median_error": 0.5}]
+    nothing = {"scored": 0, "inside": None, "median_error": None}
+    runs = [run | {"estimates": {"placed": one, "under_way": nothing}} for one in told]
+    figures = campus.together(runs)
+    assert (figures["stuck"], figures["astray"], figures["befallen"]) == (2, 2, {"killed": 4})
+    assert figures["met"] == {"corridor": 2, "bay": 0, "crossing": 0}
+    assert figures["estimates"]["placed"] == {"scored": 4, "inside": 0.75, "median_error": 0.2}
+    assert figures["estimates"]["under_way"] == nothing
 
 
-@pytest.mark.parametrize("rule", [throughput.PLAIN, Rule("quickest", orders=5, rounds=1)])
-def test_one_robot_alone_delivers_what_it_would_without_conflicts(rule: Rule) -> None:
-    run_ = throughput.run((throughput.Case(1, 1, rule), 1, 60.0))
-    assert run_.delivered == run_.same_rule
+def test_the_planner_beside_another_is_judged_by_the_same_seeds() -> None:
+    ours, theirs = {1: [60.0, 120.0], 2: [180.0]}, {1: [120.0, 240.0], 2: [360.0]}
+    found = compared(ours, theirs)
+    assert found["planner"] == {"orders": 3, "mean_min": 2.0, "p95_min": 3.0, "longest_min": 3.0}
+    assert found["mean"] == {"share": 0.5, "between": [0.5, 0.5]}
+    assert found["p95"] == {"share": 0.5, "between": [0.5, 0.5]}
 
 
-def test_one_robot_alone_delivers_no_less_with_the_planner_than_by_the_nearest_order() -> None:
-    """It may be more: the planner looks further than to the nearest."""
-    run_ = throughput.run((throughput.Case(1, 1), 1, 60.0))
-    assert run_.delivered >= run_.same_rule
+def test_a_honeycomb_fits_bodies_and_has_as_many_homes_and_bays_as_asked(tmp_path: Path) -> None:
+    path = Honeycomb(4, 3, homes=5, bays=2).write(tmp_path)
+    assert check_file(path) == ()
+    track = read_map(path).track
+    assert len([post for post in track.posts.values() if not post.bay_of]) == 12
+    assert len(track.home_bays) == 5
+    assert all(home.dock for home in track.home_bays)
+    passing = [bay for post in track.posts for bay in track.bays_of(post) if bay.is_for_passing]
+    assert len(passing) == 24
+
+
+def test_only_first_answers_that_give_an_order_are_timed() -> None:
+    async def asked() -> Watched:
+        watched = Watched(Random(1), 0, orders=1)
+        idle = problem_of(street(3), {"r0": robot(0)}, [order(0, 1, 2)])
+        await watched.decided(idle, Random(0))
+        await watched.decided(replace(idle, orders={}), Random(0))
+        return watched
+
+    watched = asyncio.run(asked())
+    assert (len(watched.took_s), len(watched.processor_s), len(watched.asked)) == (1, 1, 1)

@@ -4,28 +4,22 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TypeVar
 
-PLOTS = Path(__file__).parent / "plots"
 Job = TypeVar("Job")
 Result = TypeVar("Result")
 
 
 @dataclass(frozen=True, slots=True)
 class Samples:
-    """`hours` of each run of the throughput, with so many paired `seeds`; `robot_hours` of all runs of never_stuck
-    together; `posts` of the largest maps that are looked at exhaustively; `days` with rush hours of each rule that is
-    compared. `workers`: processes at the same time."""
+    """`seeds` of each fleet, for so many `days`; `posts` of the largest maps that are looked at exhaustively.
+    `workers`: processes at the same time."""
 
-    hours: float = 120.0
     seeds: int = 5
-    robot_hours: float = 100_000.0
     posts: int = 5
     days: float = 5.0
     first_seed: int = 1
     workers: int = os.cpu_count() or 1
-    plots: Path = PLOTS
 
     def with_workers(self, workers: int) -> "Samples":
         return replace(self, workers=workers)

@@ -9,10 +9,10 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import Final
 
-from benchmarks.fleet.packs import Pack
 from benchmarks.fleet_simulation.driving import Part, is_spur, parts_back, parts_of, place_of
 from benchmarks.fleet_simulation.durations import Spread, Taking
 from benchmarks.fleet_simulation.judge import Judge, bay
+from benchmarks.fleet_simulation.packs import Pack
 from maps import CampusMap
 from protocol.parts import Leg
 from robot.agent.perception.battery import BatteryLevel

@@ -7,6 +7,7 @@ seen = run.carry_out()
 import asyncio
 import tempfile
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -14,17 +15,19 @@ from random import Random
 from time import process_time
 from typing import Final
 
+from app.dispatch.planner_process import PlannerProcess
 from app.eta.schemas import EstimateQuality
-from benchmarks.fleet.packs import some_pack
 from benchmarks.fleet_simulation.body import Body, begins_at_home
 from benchmarks.fleet_simulation.demand import Demand, Saturated
 from benchmarks.fleet_simulation.durations import FITTED, Taking
 from benchmarks.fleet_simulation.faults import NONE, Faults, Trouble
 from benchmarks.fleet_simulation.grounds import Ground
+from benchmarks.fleet_simulation.honeycomb import Honeycomb
 from benchmarks.fleet_simulation.judge import Judge
 from benchmarks.fleet_simulation.loop import LoopClock, SimulatedLoop
 from benchmarks.fleet_simulation.network import Network
 from benchmarks.fleet_simulation.owner import Owned
+from benchmarks.fleet_simulation.packs import some_pack
 from benchmarks.fleet_simulation.people import People
 from benchmarks.fleet_simulation.robot import Mind
 from benchmarks.fleet_simulation.service import MEMORY, SHIPPED, Pace, PlansInRounds, Service
@@ -39,17 +42,18 @@ SETTLES_S: Final = 120.0
 
 @dataclass(frozen=True, slots=True)
 class Fleet:
-    """`lasts`: so many times as long as usual a pack lasts. `rounds`: of improvement, for each plan. `traffic`: the
-    service's setting."""
+    """`lasts`: so many times as long as usual a pack lasts. `rounds`: of improvement, for each plan; `planning`: who
+    decides, made of what is random and of these rounds. `traffic`: the service's setting."""
 
     robots: int = 4
-    ground: Ground = field(default_factory=Ground)
+    ground: Ground | Honeycomb = field(default_factory=Ground)
     capacity: int = 2
     lasts: float = 1.0
     rounds: int = 3
     faults: Faults = NONE
     demand: Demand | None = None
     pace: Pace = SHIPPED
+    planning: Callable[[Random, int], PlannerProcess] = PlansInRounds
     traffic: str = "schedule"
 
 
@@ -95,7 +99,7 @@ class Run:
         begun_s = process_time()
         path = self.fleet.ground.write(folder)
         campus, clock = read_map(path), LoopClock(asyncio.get_running_loop())
-        planning = PlansInRounds(self._rng("planning"), self.fleet.rounds)
+        planning = self.fleet.planning(self._rng("planning"), self.fleet.rounds)
         service = await Service.begin(
             *(folder / "service", str(path), clock, planning, self.fleet.pace),
             robot_capacity=self.fleet.capacity,

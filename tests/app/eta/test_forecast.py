@@ -6,8 +6,6 @@ from random import Random
 
 import pytest
 
-from benchmarks.fleet.estimates import figures, run
-from fleet.eta.calibration import Basis
 from fleet.eta.forecast import Chance, forecast
 from fleet.eta.intervals import Interval
 from fleet.schedule.journey import Goal, Start, Task
@@ -95,12 +93,3 @@ def test_who_is_in_a_corridor_arrives_as_is_usual_since_its_entry() -> None:
     start = Start(1, False, 100.0, 0.0, lane, 100.0)
     task = replace(at_home(0, Goal(1, 0.0, key="order")), start=start)
     assert forecast_of({"r1": task}, now_s=40.0)["order"] == (60.0, 60.0, 60.0)
-
-
-@pytest.mark.nightly
-def test_in_a_simulated_fleet_they_are_better_than_lengths_on_the_map() -> None:
-    """A short run of the benchmark; its coverage is measured there, over weeks."""
-    told = figures([run((1, 10.0))])[Basis.UNDER_WAY]["told"]
-    assert told["count"] > 20
-    assert told["median_error"] < 0.15
-    assert told["pinball_of_map"] < 0.6
