@@ -118,7 +118,7 @@ bench-pages: setup-develop ## Measure the pages as a slow phone opens them: kB, 
 bench-service-kills: setup-develop ## Kill the service 300 times under load: what it has kept and told; prints JSON
 	@$(BIN)/python -m benchmarks.service_kills $(ARGS)
 
-bench-fleet: setup-develop ## Measure the fleet in an event simulation: every small map, throughput, deadlocks; JSON and plots
+bench-fleet: setup-develop ## Measure the fleet: every small map, days of the whole service with simulated robots, decisions; JSON
 	@$(BIN)/python -m benchmarks.fleet $(ARGS)
 
 mutants-fleet: setup-develop ## Break the traffic rules on purpose, some fifty times: says which test sees each; ARGS="crossing" runs some
