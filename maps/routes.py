@@ -48,6 +48,19 @@ def shortest_route(campus: CampusMap, start: str, goal: str, avoid: Set[str] = f
     raise NoRoute(start, goal, _reason(avoid))
 
 
+def lengths_from(campus: CampusMap, start: str) -> dict[str, float]:
+    """Return the metres to each post that can be reached, found in one search. Raises UnknownPost."""
+    waiting, lengths_m = [(0.0, campus.post(start).name)], dict[str, float]()
+    while waiting:
+        length_m, here = heappop(waiting)
+        if here not in lengths_m:
+            lengths_m[here] = length_m
+            for post, corridor in campus.neighbours(here):
+                if post.name not in lengths_m:
+                    heappush(waiting, (length_m + corridor.length_m, post.name))
+    return lengths_m
+
+
 def _reason(avoid: Set[str]) -> str:
     return (
         f"every way uses a corridor to be avoided ({', '.join(sorted(avoid))})" if avoid else "no corridors lead there"

@@ -4,7 +4,7 @@ import math
 
 from maps.campus_map import CampusMap
 from maps.errors import NoRoute
-from maps.routes import Route, shortest_route
+from maps.routes import Route, lengths_from, shortest_route
 
 
 class Ways:
@@ -13,6 +13,7 @@ class Ways:
     def __init__(self, campus: CampusMap) -> None:
         self.campus = campus
         self._known: dict[tuple[str, str], Route | None] = {}
+        self._lengths_m: dict[str, dict[str, float]] = {}
 
     def route(self, from_post: str, to_post: str) -> Route:
         """As `shortest_route`. Raises UnknownPost and NoRoute."""
@@ -23,8 +24,9 @@ class Ways:
         """Infinite where nothing is known: from nowhere, to a post of another map, or where no corridors join them."""
         if from_post is None or from_post not in self.campus.posts or to_post not in self.campus.posts:
             return math.inf
-        route = self._look_up(from_post, to_post)
-        return math.inf if route is None else route.length_m
+        if from_post not in self._lengths_m:
+            self._lengths_m[from_post] = lengths_from(self.campus, from_post)
+        return self._lengths_m[from_post].get(to_post, math.inf)
 
     def _look_up(self, from_post: str, to_post: str) -> Route | None:
         if (from_post, to_post) not in self._known:

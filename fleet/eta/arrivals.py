@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from datetime import datetime, tzinfo
 from functools import cached_property, reduce
 from itertools import pairwise
+from math import isfinite
 from operator import add
 from random import Random
 from statistics import fmean
@@ -190,7 +191,8 @@ class Estimates:
         return Interval(earliest_s, (earliest_s + latest_s) / 2, latest_s)
 
     def _length_m(self, from_post: str, to_post: str) -> float:
-        return self.ways.route(from_post, to_post).length_m
+        length_m = self.ways.length_m(from_post, to_post)
+        return length_m if isfinite(length_m) else self.ways.route(from_post, to_post).length_m
 
     def _coming_s(self, from_post: str) -> float:
         docks = [dock.name for dock in self.ways.campus.docks()]

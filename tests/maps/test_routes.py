@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from maps import CampusMap, Corridor, NoRoute, Point, Post, UnknownCorridor, UnknownPost, builtin_map, shortest_route
+from maps.ways import Ways
 
 NAMES = "abcdefg"
 
@@ -109,3 +110,15 @@ def test_a_straight_line_is_what_the_estimate_believes_in():
         for corridor in campus.corridors:
             a, b = campus.post(corridor.a), campus.post(corridor.b)
             assert corridor.length_m >= math.dist(Point(a.x_m, a.y_m), Point(b.x_m, b.y_m)) - 1e-9
+
+
+@given(campuses())
+def test_lengths_found_in_one_search_are_those_of_the_routes(campus: CampusMap) -> None:
+    ways = Ways(campus)
+    for start in campus.posts:
+        for goal in campus.posts:
+            try:
+                length_m = ways.route(start, goal).length_m
+            except NoRoute:
+                length_m = math.inf
+            assert ways.length_m(start, goal) == pytest.approx(length_m)
