@@ -5,12 +5,17 @@ import subprocess
 import sys
 from importlib import import_module
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
 
 from benchmarks.body.report import missed
 from benchmarks.service.__main__ import PARTS
+from benchmarks.service.campus import MOST_POSTS, grid, write_campus
+from benchmarks.service.filling import KnownRobot
+from benchmarks.service.played_robots import at_home
+from maps.check import check
 
 CHECKOUT = Path(__file__).parents[1]
 
@@ -27,6 +32,21 @@ def test_every_part_can_be_loaded_and_says_what_is_wanted_of_it(name: str) -> No
     figures = [wanted.figure for wanted in part.WANTED]
     assert len(set(figures)) == len(figures) > 0
     assert [one.figure for one in part.WANTED if one.at_most is None and one.at_least is None] == []
+
+
+@pytest.mark.parametrize("posts", [2, 7, 36])
+def test_robots_could_drive_on_the_made_up_campus_and_each_has_a_home_of_its_own(posts: int, tmp_path: Path) -> None:
+    assert check(grid(posts)) == ()
+    campus = write_campus(tmp_path, posts)
+    fleet = at_home([KnownRobot(f"r{n}", "") for n in range(posts)], campus, Random(1))
+    assert {robot.home for robot in fleet} == {bay.name for bay in campus.track.home_bays}
+    assert len({robot.post for robot in fleet}) == posts
+
+
+def test_a_campus_is_no_larger_than_there_are_tags() -> None:
+    assert len(grid(MOST_POSTS).post) == MOST_POSTS
+    with pytest.raises(ValueError, match=f"2 to {MOST_POSTS} posts"):
+        grid(MOST_POSTS + 1)
 
 
 @pytest.mark.nightly

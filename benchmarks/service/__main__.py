@@ -15,6 +15,7 @@ import typer
 
 from benchmarks.body.report import log_to_error_stream, missed, say, table
 from benchmarks.service import yardsticks
+from benchmarks.service.campus import MOST_POSTS
 from benchmarks.service.pinned import pin
 from benchmarks.service.samples import Samples
 from benchmarks.service.servers import CHECKOUT, LOAD_CORE, SERVER_CORE
@@ -22,7 +23,7 @@ from benchmarks.service.servers import CHECKOUT, LOAD_CORE, SERVER_CORE
 # What each shows; the modules are loaded when they are run.
 PARTS = {
     "orders": "order creation beside a bare endpoint with one durable insert",
-    "instructions": "from the order to the mission at the robot, 50 orders a second",
+    "instructions": "from the order to the mission at the robot, one order a second",
     "robots": "a fleet that reports once a second: until it is acknowledged durably",
     "followers": "open pages: until everybody sees a change",
     "history": "a page of my mail with a long history and with a short one",
@@ -37,8 +38,8 @@ def measure(
     parts: Annotated[list[str] | None, typer.Argument(help=f"Which: {', '.join(PARTS)}. All of them if none.")] = None,
     *,
     seconds: Annotated[float, typer.Option(min=0.5, help="How long each part keeps up its load.")] = 20.0,
-    rounds: Annotated[int, typer.Option(min=1, help="Turns of service and bare endpoint.")] = 5,
-    robots: Annotated[int, typer.Option(min=1, help="Robots of the fleet.")] = 1000,
+    rounds: Annotated[int, typer.Option(min=1, help="Turns beside the bare endpoint; fleets of instructions.")] = 5,
+    robots: Annotated[int, typer.Option(min=2, max=MOST_POSTS, help="Robots of the fleet.")] = 100,
     followers: Annotated[int, typer.Option(min=1, help="Open pages.")] = 500,
     history: Annotated[int, typer.Option(min=100, help="Orders of the long history.")] = 100_000,
     backlog: Annotated[int, typer.Option(min=1, help="Messages that wait in the robot.")] = 2000,
@@ -56,7 +57,7 @@ def measure(
         raise typer.BadParameter(f"no part is called {', '.join(unknown)}; there are {', '.join(PARTS)}")
     log_to_error_stream()
     machine = _machine()
-    # A load generator that looks for garbage among a thousand robots stands still for 0.2 s, and would call that the
+    # A load generator that looks for garbage among hundreds of robots stands still for 0.2 s, and would call that the
     # service's: some seconds of garbage fit into memory.
     gc.disable()
     if not pin(LOAD_CORE):

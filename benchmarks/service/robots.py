@@ -1,4 +1,7 @@
-"""A fleet of which every robot reports once a second: how long until the service has it on its disk and says so."""
+"""A fleet of which every robot reports once a second: how long until the service has it on its disk and says so.
+
+Each stands in a home of its own, and says so, as the schedule has it.
+"""
 
 import asyncio
 import sqlite3
@@ -9,17 +12,18 @@ from random import Random
 from typing import Any, Final
 
 from benchmarks.body.report import Wanted, say
+from benchmarks.service.campus import campus_file, write_campus
 from benchmarks.service.figures import times
-from benchmarks.service.filling import Filling, KnownRobot, campus, fill
-from benchmarks.service.played_robots import PlayedRobot, connect_all
+from benchmarks.service.filling import Filling, KnownRobot, fill
+from benchmarks.service.played_robots import PlayedRobot, at_home, come_home
 from benchmarks.service.samples import Punctuality, Samples, until
-from benchmarks.service.servers import MORE_THAN_A_MAP_CARRIES, Server, service
-from protocol.parts import Activity, Battery, Position
-from protocol.to_server import Event, Progress, Snapshot, Step
+from benchmarks.service.servers import Server, service
+from maps import CampusMap
+from protocol.parts import Activity, Position
+from protocol.to_server import Snapshot
 
 SNAPSHOT_EVERY: Final = 5
-"""Every fifth report comes with a snapshot, as of a robot that passes a post."""
-SETTLED_S: Final = 2.0
+"""Every fifth report comes with a snapshot."""
 LAST_ACKNOWLEDGED_WITHIN_S: Final = 10.0
 
 WANTED = (
@@ -34,41 +38,43 @@ WANTED = (
 
 def measure(samples: Samples) -> dict[str, Any]:
     async def fleet(filling: Filling) -> list[KnownRobot]:
-        (account,) = await filling.people(1)
-        return await filling.give_missions(await filling.robots(samples.robots), account)
+        return await filling.robots(samples.robots)
 
     with samples.folder() as folder:
+        campus = write_campus(folder, samples.robots)
         known = fill(folder, fleet)
-        with service(folder, **MORE_THAN_A_MAP_CARRIES) as server:
-            return asyncio.run(_measure(samples, server, known, folder / "campus-mail.sqlite"))
+        with service(folder, MAP=str(campus_file(folder))) as server:
+            return asyncio.run(_measure(samples, server, campus, known, folder / "campus-mail.sqlite"))
 
 
-async def _measure(samples: Samples, server: Server, known: list[KnownRobot], database: Path) -> dict[str, Any]:
+async def _measure(
+    samples: Samples, server: Server, campus: CampusMap, known: list[KnownRobot], database: Path
+) -> dict[str, Any]:
     random, punctuality = Random(f"{samples.first_seed}/robots"), Punctuality()
-    posts = sorted(campus().posts)
-    fleet = [PlayedRobot(one, random.choice(posts), campus().version) for one in known]
-    connected_s = await connect_all(fleet, server.link_url)
-    say(f"  {len(fleet)} robots connected in {connected_s:.1f} s; each reports once a second")
-    await asyncio.sleep(SETTLED_S)
+    fleet = at_home(known, campus, random)
+    known_s = await come_home(fleet, server)
+    say(f"  all of them planned for after {known_s:.1f} s; each reports once a second")
+    said = sum(robot.seq for robot in fleet)
     watching = asyncio.create_task(punctuality.watch())
     before_s, begun_s = server.processor_s(), time.perf_counter()
-    await asyncio.gather(*(_report(robot, random, posts, begun_s + samples.seconds) for robot in fleet))
+    await asyncio.gather(*(_report(robot, random, begun_s + samples.seconds) for robot in fleet))
     used = (server.processor_s() - before_s) / (time.perf_counter() - begun_s)
     await until(lambda: all(robot.acknowledged >= robot.seq for robot in fleet), LAST_ACKNOWLEDGED_WITHIN_S)
     watching.cancel()
     used_s = server.processor_s() - before_s
     connected = sum(robot.is_connected for robot in fleet)
+    reports = sum(robot.seq for robot in fleet) - said
     figures = {
         "robots": len(fleet),
-        "fleet_connected_in_s": round(connected_s, 2),
-        "reports": sum(robot.seq for robot in fleet),
+        "fleet_planned_for_after_s": round(known_s, 2),
+        "reports": reports,
         "report_to_durable_acknowledgement": times([s for robot in fleet for s in robot.acknowledged_after_s]),
         "not_acknowledged": sum(robot.seq - robot.acknowledged for robot in fleet),
         "acknowledged_and_not_in_the_database": _missing(database, fleet),
         "refused": sum(len(robot.errors) for robot in fleet),
         "disconnected": len(fleet) - connected,
         "share_of_its_core": round(used, 2),
-        "processor_ms_per_report": round(used_s / sum(robot.seq for robot in fleet) * 1e3, 3),
+        "processor_ms_per_report": round(used_s / reports * 1e3, 3),
         "load_generator_late": punctuality.figures(),
         "memory": server.memory_mib(),
     }
@@ -76,17 +82,14 @@ async def _measure(samples: Samples, server: Server, known: list[KnownRobot], da
     return figures
 
 
-async def _report(robot: PlayedRobot, random: Random, posts: list[str], end_s: float) -> None:
-    assert robot.known.mission_id is not None
+async def _report(robot: PlayedRobot, random: Random, end_s: float) -> None:
     due_s = time.perf_counter() + random.random()
     while due_s < end_s:
         await asyncio.sleep(max(0.0, due_s - time.perf_counter()))
-        post, now = random.choice(posts), datetime.now(UTC)
-        passed = Progress(step=Step.PASSED, happened_at=now, mission_id=robot.known.mission_id, post=post)
-        await robot.say(Event(happened=passed))
+        await robot.say(robot.in_its_bay())
         if robot.seq % SNAPSHOT_EVERY == 0:
-            position = Position(post=post, seen_at=now)
-            await robot.say(Snapshot(position=position, activity=Activity.DRIVING, battery=Battery(ratio=0.8)))
+            position = Position(post=robot.home, seen_at=datetime.now(UTC))
+            await robot.say(Snapshot(position=position, activity=Activity.IDLE, battery=robot.battery))
         due_s += 1.0
 
 

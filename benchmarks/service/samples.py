@@ -18,7 +18,7 @@ class Samples:
 
     seconds: float = 20.0
     rounds: int = 5
-    robots: int = 1000
+    robots: int = 100
     followers: int = 500
     history: int = 100_000
     backlog: int = 2000

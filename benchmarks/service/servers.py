@@ -18,9 +18,6 @@ SERVER_CORE: Final = 0
 LOAD_CORE: Final = 1
 STARTS_WITHIN_S: Final = 60.0
 MAP: Final = "carleton"
-MORE_THAN_A_MAP_CARRIES: Final = {"TRAFFIC": "at_once"}
-"""For hundreds of robots: no map has homes for them. Not the shipped mode, and the only reason that there is another
-(docs/decisions/0085-at-once-measures-more-than-a-map-carries.md)."""
 
 
 class DidNotStart(Exception):
@@ -38,6 +35,11 @@ class Server:
     @property
     def link_url(self) -> str:
         return f"ws://127.0.0.1:{self.port}/api/v1/robots/link"
+
+    def health(self) -> None:
+        """Ask how it is, and wait for the answer. Raises OSError."""
+        with urllib.request.urlopen(f"http://127.0.0.1:{self.port}/healthz", timeout=60) as answer:
+            json.load(answer)
 
     def memory_mib(self) -> dict[str, float]:
         """Resident memory now, and the most it has ever been."""
@@ -98,8 +100,8 @@ def _running(command: list[str], port: int, log: Path, environment: dict[str, st
 def _wait_until_it_answers(server: Server) -> None:
     end_s = time.monotonic() + STARTS_WITHIN_S
     while time.monotonic() < end_s and server.process.poll() is None:
-        with suppress(OSError), urllib.request.urlopen(f"http://127.0.0.1:{server.port}/healthz", timeout=2) as answer:
-            json.load(answer)
+        with suppress(OSError):
+            server.health()
             return
         time.sleep(0.05)
     raise DidNotStart(server.log.read_text(errors="replace")[-2000:])
