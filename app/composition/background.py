@@ -55,7 +55,7 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
 
 
 def _workers(parts: Parts) -> dict[str, Worker]:
-    workers: dict[str, Worker | None] = {
+    return {
         "dispatch": parts.dispatcher,
         "timer": parts.timer,
         "retention": parts.retention_job,
@@ -67,7 +67,6 @@ def _workers(parts: Parts) -> dict[str, Worker]:
         "traffic": parts.traffic_service,
         "planning": parts.planner,
     }
-    return {name: worker for name, worker in workers.items() if worker is not None}
 
 
 async def _begin(parts: Parts) -> None:

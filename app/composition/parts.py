@@ -19,7 +19,6 @@ from app.core.http_client import TIMEOUT_S, HttpClient, trusted_here
 from app.core.mail import Mailer, open_mailer
 from app.core.server_key import ServerKey, open_server_key
 from app.core.settings import Settings, make_data_folder, open_map
-from app.dispatch.at_once.nearest import NearestRobots
 from app.dispatch.eta_updates import EtaUpdates
 from app.dispatch.fleet_planner import FleetPlanner
 from app.dispatch.held_up import NoRobotComes
@@ -95,9 +94,9 @@ class Parts:
     """Reaches the address that the operator set, which may be on the campus's own network."""
     outbox_worker: OutboxWorker = field(init=False)
 
-    traffic_service: TrafficService | None = field(init=False, default=None)
-    planner: FleetPlanner | None = field(init=False, default=None)
-    charging_service: ChargingService | None = field(init=False, default=None)
+    traffic_service: TrafficService = field(init=False)
+    planner: FleetPlanner = field(init=False)
+    charging_service: ChargingService = field(init=False)
     dispatcher: Dispatcher = field(init=False)
     eta_updates: EtaUpdates = field(init=False)
     retention_job: RetentionJob = field(init=False)
@@ -159,27 +158,21 @@ class Parts:
         )
 
     def _add_planning(self) -> None:
-        if self.settings.traffic == "schedule":
-            self.traffic_service = TrafficService(self.fleet, ChargeFirst(self.fleet).sends)
-            self.planner = FleetPlanner(self.fleet, self.traffic_service, self.planner_process)
-            self.charging_service = ChargingService(self.fleet)
-        self.dispatcher = Dispatcher(self.fleet, self.planner or NearestRobots(self.fleet))
+        self.traffic_service = TrafficService(self.fleet, ChargeFirst(self.fleet).sends)
+        self.planner = FleetPlanner(self.fleet, self.traffic_service, self.planner_process)
+        self.charging_service = ChargingService(self.fleet)
+        self.dispatcher = Dispatcher(self.fleet, self.planner)
         self.eta_updates = EtaUpdates(self.fleet, self.traffic_service)
 
     def _connect(self) -> None:
         """Say what each change wakes, in this order. Each is called after the commit of the change."""
-        learning = self.fleet.learning
+        learning, traffic, dispatcher = self.fleet.learning, self.traffic_service, self.dispatcher
         learning.why_none = NoRobotComes(self.fleet).why
         self.orders.ledger.on_change.extend([learning.wake, self.outbox_worker.wake])
-        self.fleet.on_change.extend([learning.wake])
-        if self.traffic_service is not None and self.planner is not None and self.charging_service is not None:
-            self.orders.ledger.on_change.extend([self.traffic_service.wake, self.charging_service.wake])
-            self.fleet.on_change.extend([self.traffic_service.wake])
-            self.traffic_service.on_poll.extend(
-                [self.planner.notice, self.dispatcher.wake_for_robot, self.eta_updates.wake]
-            )
-        self.orders.ledger.on_change.extend([self.dispatcher.wake, self.eta_updates.wake])
-        self.fleet.on_change.extend([self.dispatcher.wake_for_robot, self.eta_updates.wake])
+        self.orders.ledger.on_change.extend([traffic.wake, self.charging_service.wake])
+        self.orders.ledger.on_change.extend([dispatcher.wake, self.eta_updates.wake])
+        self.fleet.on_change.extend([learning.wake, traffic.wake, dispatcher.wake_for_robot, self.eta_updates.wake])
+        traffic.on_poll.extend([self.planner.notice, dispatcher.wake_for_robot, self.eta_updates.wake])
 
     async def _link_for(self, person: Person, notice: Notification) -> str | None:
         """Return the link that goes with a mail to a person without an account."""

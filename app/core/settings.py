@@ -152,10 +152,6 @@ class Settings(BaseSettings):
         description="Where undelivered mail goes: sender, or the mailroom of the map. Robots are set alike.",
     )
     queue_limit_s: float = Field(86400, gt=0, description="An order that no robot has fetched for so long expires.")
-    traffic: Literal["schedule", "at_once"] = Field(
-        "schedule",
-        description="How corridors are granted: by one schedule for all robots, or at once, to measure with.",
-    )
     vanished_after_s: float = Field(
         900, gt=0, description="A robot that was not heard of for so long is gone round, and people are told."
     )

@@ -19,7 +19,7 @@ REMOVED: Final = frozenset(
         *("ENROLMENT_TRIES_PER_HOST", "LINK_LIFETIME_S", "LINK_TRIES_PER_HOST", "NEAR_S"),
         *("NEW_BROWSER_CODES_PER_ADDRESS", "ORDERS_PER_PERSON", "PLANNING_BUDGET_S", "PRIORITY_HEAD_START_S"),
         *("SIGN_IN_CODES_PER_ADDRESS", "SIGN_IN_CODES_PER_HOST", "SIGN_IN_TRIES_PER_HOST"),
-        *("STANDING_ORDER_GRACE_S", "WAIT_EXTENSIONS", "WAIT_EXTENSION_S"),
+        *("STANDING_ORDER_GRACE_S", "TRAFFIC", "WAIT_EXTENSIONS", "WAIT_EXTENSION_S"),
     }
 )
 """Settings that were removed (CHANGELOG.md). A value that is set and no longer read is an error: its operator relies

@@ -11,9 +11,8 @@ from math import isfinite
 from typing import Final, Protocol
 
 from app.core.settings import Settings
-from app.dispatch.choice import ENOUGH_CHARGE, IdleRobot, WaitingOrder
 from app.robots.energy_use import usual_rates
-from fleet.charging.acceptance import Answer, Charge, Verdict, accepts, goes_on
+from fleet.charging.acceptance import Charge, goes_on
 from fleet.charging.docks import Need
 from fleet.charging.energy import Rates, Use
 from fleet.charging.levels import Thresholds
@@ -21,6 +20,9 @@ from fleet.charging.top_ups import nearest
 from maps.ways import Ways
 
 THRESHOLDS: Final = Thresholds()
+ENOUGH_CHARGE: Final = 0.30
+"""Not for any order: above the ratio at which a robot's own battery plan would take it back to the dock at once (0.25
+and hysteresis)."""
 LONGEST_DRIVE_S: Final = 8 * 3600.0
 CLOSE_ENOUGH_S: Final = 10.0
 LEAVES_DOCK: Final = THRESHOLDS.begin + THRESHOLDS.hysteresis
@@ -57,22 +59,6 @@ class Charges:
         self._assumed = usual_rates()
         self._docks = frozenset(post.name for post in self.ways.campus.docks())
         self._shared = frozenset(self.ways.campus.docks_to_share())
-
-    def may_take(self, robot: IdleRobot, order: WaitingOrder) -> bool:
-        """Also what is more than one charge, once it is as full as it gets: it charges on the way then."""
-        if robot.battery_ratio is None:
-            return False
-        verdict = self.verdict(robot, robot.battery_ratio, order)
-        if verdict.answer is Answer.CHARGE_FIRST and not self._will_charge(robot):
-            return robot.battery_ratio >= min(verdict.needed, THRESHOLDS.begin)
-        return verdict.is_accepted
-
-    def verdict(self, robot: IdleRobot, ratio: float, order: WaitingOrder) -> Verdict:
-        """Unknown ways cost nothing: they are not what keeps a robot from work."""
-        charge = Charge(ratio, self.rates.get(robot.name, self._assumed), docked=bool(robot.docked or robot.charging))
-        way_m = self._length_m(robot.post, order.from_post) + self._length_m(order.from_post, order.to_post)
-        work, to_dock = self._use(way_m, handovers=2), self._use(self._to_dock_m(order.to_post, robot))
-        return accepts(charge, work, to_dock, THRESHOLDS)
 
     def drives_s(self, robot: Charged) -> float:
         """For how many seconds of driving, as the map has them, its charge lasts, with the way home and hand-overs."""

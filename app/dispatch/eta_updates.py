@@ -19,7 +19,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.core.database.database import after_commit, connection_of
 from app.core.polling import PollingLoop
-from app.dispatch.forecasts import Stop, by_schedule, by_their_ways
+from app.dispatch.forecasts import Stop, by_schedule
 from app.eta.records import Intervals, keep_under_way
 from app.models import MissionRow, MissionState, Order, OrderState, RobotRow, StopRow
 from app.orders.ledger import Expected
@@ -71,10 +71,10 @@ class UnderWay(NamedTuple):
 
 @dataclass
 class EtaUpdates:
-    """Runs in the background of the service. `desk`: None where every corridor is granted at once."""
+    """Runs in the background of the service."""
 
     fleet: Fleet
-    desk: TrafficService | None
+    desk: TrafficService
     _rng: Random = field(default_factory=lambda: Random(0))
     _said: dict[str, str | None] = field(default_factory=dict)
     """The reason of each order, as pages have it."""
@@ -107,10 +107,9 @@ class EtaUpdates:
             self._said.clear()
             self._kept.clear()
             return
-        robots = {robot.name: robot for _, robot in pairs}
         now = self.fleet.clock.utc()
         await self.polling.breathe()
-        forecast = await self._forecast(robots, stops, now)
+        forecast = await self._forecast(stops, now)
         receive = {stop.order_id: stop.id for stop in stops if stop.action == StopAction.RECEIVE}
         estimates = self.fleet.orders.ledger.estimates
         under_way = [
@@ -125,13 +124,8 @@ class EtaUpdates:
     def _is_new(self, one: UnderWay) -> bool:
         return self._said.get(one.order.id) != one.why or (one.may_be_kept and one.stage not in self._kept)
 
-    async def _forecast(
-        self, robots: Mapping[str, RobotRow], stops: Sequence[Stop], now: datetime
-    ) -> Mapping[str, Interval]:
-        estimates = self.fleet.orders.ledger.estimates
-        if self.desk is None:
-            return await by_their_ways(estimates, robots, stops, now, self._rng, self.polling.breathe)
-        schedule = self.desk.schedule
+    async def _forecast(self, stops: Sequence[Stop], now: datetime) -> Mapping[str, Interval]:
+        estimates, schedule = self.fleet.orders.ledger.estimates, self.desk.schedule
         if schedule is None:
             return {}
         return await by_schedule(estimates, schedule.controller, stops, now, self.fleet.clock.now(), self._rng)

@@ -1,18 +1,16 @@
-"""Forecasts of all stops that robots have before them: by the schedule, or, without one, by the way of each robot."""
+"""Forecasts of all stops that robots have before them, by the schedule."""
 
 import asyncio
-from collections.abc import Awaitable, Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from random import Random
 from typing import Final, NamedTuple
 
-from app.models import RobotRow
 from fleet.eta.arrivals import Estimates
 from fleet.eta.durations import Kind
 from fleet.eta.forecast import Chance, forecast
 from fleet.eta.intervals import Interval
-from fleet.eta.on_the_way import Ahead, Place, on_the_way
 from fleet.schedule.controller import TrafficController
 from fleet.schedule.journey import Goal
 from fleet.schedule.network import Lane, Network
@@ -78,26 +76,3 @@ async def by_schedule(
     network, tasks, journeys = controller.network, controller.tasks(now_s), controller.journeys(now_s)
     sees = Foresight(estimates, network, {stop.id: stop for stop in stops}, now, now_s, rng)
     return await asyncio.to_thread(forecast, network, tasks, journeys, now_s, sees.chance())
-
-
-async def by_their_ways(
-    estimates: Estimates,
-    robots: Mapping[str, RobotRow],
-    stops: Sequence[Stop],
-    now: datetime,
-    rng: Random,
-    breathe: Callable[[], Awaitable[None]],
-) -> dict[str, Interval]:
-    """The same where every corridor is granted at once. `breathe` is called after each robot."""
-    places = {name: Place(one.post, one.towards, one.seen_at) for name, one in robots.items() if one.post is not None}
-    ahead: dict[str, list[Ahead]] = {name: [] for name in places}
-    for stop in stops:
-        if stop.robot in places:
-            ahead[stop.robot].append(Ahead(stop.id, stop.post, KIND_OF.get(stop.action), stop.arrived_at))
-
-    found = dict[str, Interval]()
-    for name, theirs in ahead.items():
-        found |= on_the_way(estimates, places[name], theirs, now, rng)
-        # Not in a thread: it would hold the interpreter for 5 ms whenever the service has waited for anything.
-        await breathe()
-    return found

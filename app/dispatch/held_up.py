@@ -6,10 +6,10 @@ from typing import Final
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.dispatch.choice import NONE_CONNECTED
 from app.dispatch.open_work import HeldUp, RobotNow, read_held_up
 from app.robots.service import Fleet
 
+NONE_CONNECTED: Final = "No robot is connected at the moment."
 SENTENCES: Final = {
     HeldUp.STUCK_MAIL: "No robot is free: the mailroom has to see to stuck mail first.",
     HeldUp.STOPPED: "Every robot that could fetch it has stopped and needs help.",

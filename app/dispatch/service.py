@@ -7,9 +7,10 @@ at any moment: a mission that was decided on is in the robot's outbox and is sen
 
 import asyncio
 from contextlib import suppress
-from typing import Final, Protocol
+from typing import Final
 
 from app.core.polling import LONGEST_REST_S, REST
+from app.dispatch.fleet_planner import FleetPlanner
 from app.dispatch.waiting_work import PendingWork, read_pending_work
 from app.models import MissionRow, RobotRow
 from app.orders.custody.by_hand import is_taken_out_by_hand
@@ -24,30 +25,20 @@ NOBODY_FREE_S: Final = 0.1
 """Real seconds. While orders wait for robots, looking more often finds nothing new and takes time from what is."""
 
 
-class Assigning(Protocol):
-    """Gives waiting orders to robots. `left`: so many found none at the last look; `own`: orders it is changing."""
-
-    left: int
-    own: set[str]
-
-    async def assign(self) -> bool:
-        """Give as many as there are robots for; whether there may be more to give at once."""
-
-
 class Dispatcher:
     """Runs in the background of the service."""
 
-    def __init__(self, fleet: Fleet, assigning: Assigning) -> None:
+    def __init__(self, fleet: Fleet, planner: FleetPlanner) -> None:
         self._fleet = fleet
-        self._assigning = assigning
+        self._planner = planner
         self._woken = asyncio.Event()
         self._stopped = asyncio.Event()
         self._needs_robots = True
 
     def wake(self, changed: str = "") -> None:
         """An order has changed: look again, unless that is what was just decided here."""
-        if changed in self._assigning.own:
-            self._assigning.own.discard(changed)
+        if changed in self._planner.own:
+            self._planner.own.discard(changed)
         else:
             self._woken.set()
 
@@ -85,9 +76,9 @@ class Dispatcher:
             pending = await read_pending_work(connection, self._fleet.clock.utc())
         await self._pass_on(pending)
         if pending.waits:
-            while await self._assigning.assign():
+            while await self._planner.assign():
                 pass
-        return (pending.waits and self._assigning.left > 0) or bool(pending.changed)
+        return (pending.waits and self._planner.left > 0) or bool(pending.changed)
 
     # What has changed for robots.
 

@@ -4,13 +4,14 @@ arrive, from the same decision."""
 from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
-from app.dispatch.choice import BUSY, FETCHER_BUSY, NONE_CONNECTED
-from app.dispatch.held_up import why_held_up
+from app.dispatch.held_up import NONE_CONNECTED, why_held_up
 from app.dispatch.open_work import OpenWork
 from fleet.assignment.comes_next import given_at_s
 from fleet.assignment.deciding import Decision
 from fleet.assignment.why import Why, why_orders_wait
 
+BUSY: Final = "Every robot is busy."
+FETCHER_BUSY: Final = "The robot that is to fetch it is busy."
 ONE_AHEAD: Final = "Every robot is busy, and one order is ahead of this one."
 SOME_AHEAD: Final = "Every robot is busy, and {orders} orders are ahead of this one."
 MANY_AHEAD: Final = "Every robot is busy, and many orders are ahead of this one."

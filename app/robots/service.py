@@ -2,7 +2,7 @@
 
 import re
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 
@@ -34,7 +34,6 @@ from maps import CampusMap
 from protocol.clock import Clock
 from protocol.ids import new_uuid
 from protocol.parts import Activity, Battery, Part, Position
-from protocol.to_robot import Grant
 from protocol.to_server import Claim, Clear, Event, Fault, Occupancy, Snapshot, Why, Withdraw
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
@@ -123,11 +122,6 @@ class Fleet:
         after_commit(session, lambda: self.connections.wake(robot.name))
         return seq
 
-    async def tell_all(self, session: AsyncSession, news: Mapping[str, Sequence[Part]]) -> None:
-        """The same for several robots, by their names: one statement writes all of it."""
-        kept = await outbox.keep_all(session, news, self.clock.utc(), self.connections.tokens(news))
-        after_commit(session, partial(self.connections.hand_over, kept))
-
     async def follow(self, session: AsyncSession, robot: RobotRow | Known, message: Part) -> None:
         """Do what follows from a durable message. Raises FleetError or ServiceError; undo what it has done then."""
         now = self.clock.utc()
@@ -139,12 +133,9 @@ class Fleet:
                     await tell_of_closed(session, self.feed)
                 await self.learning.hear(session, robot.name, message.happened, report.when)
             case Claim() if isinstance(robot, RobotRow):
-                by_schedule = self.settings.traffic == "schedule"
-                reply = await reservations.answer(session, self.campus, robot.name, message, now, by_schedule)
-                if isinstance(reply, Grant):
-                    self.learning.let_in(robot.name, reply.legs, now)
-                if reply is not None:
-                    await self.tell(session, robot, reply)
+                denied = await reservations.answer(session, self.campus, robot.name, message, now)
+                if denied is not None:
+                    await self.tell(session, robot, denied)
                     await tell_of_traffic(session, self.feed, robot.name)
             case Withdraw() if isinstance(robot, RobotRow):
                 if await reservations.withdraw(session, robot, message):

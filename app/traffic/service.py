@@ -45,7 +45,7 @@ async def _never(_session: AsyncSession, _robot: RobotRow, _claim: ClaimRow, _le
 
 
 class TrafficService:
-    """Runs in the background of the service, if traffic goes by the schedule."""
+    """Runs in the background of the service."""
 
     def __init__(self, fleet: Fleet, charges_first: ChargesFirst = _never) -> None:
         self._fleet = fleet

@@ -46,7 +46,8 @@ Purposeful = tuple[str, str]
 class Mind:
     """One life of the daemon, from its start to its end. What it knows at first is what its store remembers.
 
-    `first_home`: of its settings, until the service gives it one. `_asides`: where the service has sent it first.
+    `first_home`: of its settings, until the service gives it one. `unasked`: as for `Route`. `_asides`: where the
+    service has sent it first.
     """
 
     name: str
@@ -58,6 +59,7 @@ class Mind:
     people: People
     store: Store
     rng: Random
+    unasked: bool = False
     link: RobotLink = field(init=False)
     missions: MissionManager = field(init=False)
     telling: Telling = field(init=False)
@@ -75,7 +77,7 @@ class Mind:
         self.telling = Telling(self.first_home, self.track.version, self.body, self.missions)
         self.link = RobotLink(self.name, self.network, self.clock, outbox, memory, self.telling.hello, self.rng)
         self.missions.join(self.link)
-        self.route = Route(self.track, self.body, self.missions)
+        self.route = Route(self.track, self.body, self.missions, self.unasked)
         self.link.on_news = self._hears
 
     async def run(self) -> None:

@@ -116,12 +116,12 @@ class Service:
         parts = self.parts
         paced = (parts.traffic_service, pace.traffic_s), (parts.charging_service, pace.charging_s)
         for worker, times in (*paced, (parts.eta_updates, pace.eta_s)):
-            if worker is not None and times is not None:
+            if times is not None:
                 worker.polling.again_s, worker.polling.rest_s = times
 
     def _workers(self) -> Mapping[str, Coroutine[Any, Any, None]]:
         parts = self.parts
-        workers: dict[str, Worker | None] = {
+        workers: dict[str, Worker] = {
             "dispatch": parts.dispatcher,
             "estimates": parts.fleet.learning,
             "eta_updates": parts.eta_updates,
@@ -130,8 +130,7 @@ class Service:
             "traffic": parts.traffic_service,
             "planning": parts.planner,
         }
-        running = {name: worker.run() for name, worker in workers.items() if worker is not None}
-        return {**running, "timer": self._tick()}
+        return {**{name: worker.run() for name, worker in workers.items()}, "timer": self._tick()}
 
     async def _tick(self) -> None:
         while True:

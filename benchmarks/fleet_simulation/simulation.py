@@ -43,7 +43,8 @@ SETTLES_S: Final = 120.0
 @dataclass(frozen=True, slots=True)
 class Fleet:
     """`lasts`: so many times as long as usual a pack lasts. `rounds`: of improvement, for each plan; `planning`: who
-    decides, made of what is random and of these rounds. `traffic`: the service's setting."""
+    decides, made of what is random and of these rounds. `unasked`: robots go in without permission, to see that a judge
+    sees it."""
 
     robots: int = 4
     ground: Ground | Honeycomb = field(default_factory=Ground)
@@ -54,7 +55,7 @@ class Fleet:
     demand: Demand | None = None
     pace: Pace = SHIPPED
     planning: Callable[[Random, int], PlannerProcess] = PlansInRounds
-    traffic: str = "schedule"
+    unasked: bool = False
 
 
 @dataclass
@@ -103,7 +104,6 @@ class Run:
         service = await Service.begin(
             *(folder / "service", str(path), clock, planning, self.fleet.pace),
             robot_capacity=self.fleet.capacity,
-            traffic=self.fleet.traffic,
         )
         judge, taking = Judge(campus.track, clock.now), Taking(campus, FITTED, self.seed)
         people, befallen = People(service.parts, taking, self._rng("people")), Counter[str]()
@@ -147,7 +147,7 @@ class Run:
         begins_at_home(body)
         network = Network(service.serve, await service.enrol(name), self._rng(f"{name} network"))
         mind = partial(Mind, name, home, campus.track, clock, body, network, people)
-        make = partial(mind, Store(None), self._rng(f"{name} mind"))
+        make = partial(mind, Store(None), self._rng(f"{name} mind"), self.fleet.unasked)
         one = Owned(name, body, network, people, make, befallen)
         one.switch_on()
         self.owned.append(one)

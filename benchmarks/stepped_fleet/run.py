@@ -73,9 +73,7 @@ class Run:
         path.write_text(toml_of(scaled(load_map_file(map_path(self.fleet.map)), self.fleet.scale)))
         campus, clock = read_map(path), LoopClock(asyncio.get_running_loop())
         planning = PlansInRounds(Random(f"{self.seed} planning"), 3)
-        service = await Service.begin(
-            folder / "service", str(path), clock, planning, self.fleet.pace, traffic="schedule"
-        )
+        service = await Service.begin(folder / "service", str(path), clock, planning, self.fleet.pace)
         people = People(service.parts, Taking(campus, FITTED, self.seed), Random(f"{self.seed} people"))
         await people.begin()
         world, floor, paces = World(campus, seed=self.seed), TrueFloor(campus.track), Paces(campus.track)

@@ -57,7 +57,7 @@ class FleetDemo(Demonstration):
     @property
     def more(self) -> dict[str, Any]:
         # People of a demonstration come at once, or not at all; who looks on does not wait long for an alarm either.
-        return {"traffic": "schedule", "wait_limit_s": 90.0, "assumed_handover_s": 30.0, "vanished_after_s": 120.0}
+        return {"wait_limit_s": 90.0, "assumed_handover_s": 30.0, "vanished_after_s": 120.0}
 
     @property
     def interval_s(self) -> float:

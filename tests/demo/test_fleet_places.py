@@ -135,7 +135,6 @@ def test_the_tunnels_of_a_demonstration_are_a_tenth_as_long_and_its_robots_are_a
     small = find_map(demo.map)
     assert small.corridor("uc", "canal").length_m == pytest.approx(campus.corridor("uc", "canal").length_m / 10)
     assert sorted(demo.homes.values()) == sorted(bay.name for bay in small.track.home_bays if bay.dock)
-    assert demo.service.traffic == "schedule"
 
 
 @pytest.mark.parametrize("ghosts", [False, True])

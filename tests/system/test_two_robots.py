@@ -26,15 +26,12 @@ ASIDE = {"post1", "post5", "post2_bay1", "post3_bay1", "post4_bay2"}
 
 
 class SharedTrack(Rig):
-    """A service that goes by the schedule, and robots that are started by the test."""
+    """A service, and robots that are started by the test."""
 
     def __enter__(self) -> "SharedTrack":
         self.wire.__enter__()
         self.start_service()
         return self
-
-    def _service_env(self) -> dict[str, str]:
-        return {**super()._service_env(), "CAMPUS_MAIL_TRAFFIC": "schedule"}
 
     def __exit__(self, *_: object) -> None:
         for person in self.people:

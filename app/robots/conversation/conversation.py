@@ -62,18 +62,14 @@ class Conversation:
         self._room = asyncio.Semaphore(MAX_IN_HAND)
         self._owes_ack = False
         self._problems: list[Error] = []
-        self._news: list[Waiting] = []
         self._look_again = True
         self._is_held_back = False
         self._knows_watching = False
         self.understands: Collection[str] = ()
         self._watch: Watch | None = None
 
-    def wake(self, news: Sequence[Waiting] = ()) -> None:
-        if news:
-            self._news += news
-        else:
-            self._look_again = True
+    def wake(self) -> None:
+        self._look_again = True
         self._wake.set()
 
     def watch(self, watch: Watch) -> bool:
@@ -221,7 +217,6 @@ class Conversation:
             self._wake.clear()
             await self._answer()
             await self._send_watch()
-            await self._send_news()
             if self._look_again:
                 self._look_again = False
                 await self._send_waiting()
@@ -241,24 +236,8 @@ class Conversation:
         if watch is not None:
             await self._send(watch)
 
-    async def _send_news(self) -> None:
-        """Send what was handed over, if nothing else is to be sent before it."""
-        news, self._news = [one for one in self._news if one.seq > self._sent], []
-        if not news:
-            return
-        is_next = news[-1].seq == self._sent + len(news) and len(news) <= self._room_left()
-        if self._look_again or not is_next:
-            self._look_again = True
-            return
-        for one in news:
-            await self._send_text(one.type, one.body, one.seq)
-            self._sent = one.seq
-
-    def _room_left(self) -> int:
-        return max(0, MAX_UNACKNOWLEDGED - (self._sent - self.acknowledged))
-
     async def _send_waiting(self) -> None:
-        room = self._room_left()
+        room = max(0, MAX_UNACKNOWLEDGED - (self._sent - self.acknowledged))
         rows = await self._waiting(room) if room else []
         self._is_held_back = len(rows) == room
         for row in rows:

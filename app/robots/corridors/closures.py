@@ -46,12 +46,10 @@ async def found_closed(session: AsyncSession) -> dict[str, list[Alarm]]:
     return found
 
 
-async def closed_names(session: AsyncSession, found_by_others_than: str = "") -> frozenset[str]:
-    """`found_by_others_than`: what this robot found itself it goes round by itself, until it tries it again."""
+async def closed_names(session: AsyncSession) -> frozenset[str]:
+    """Return the corridors that people have closed and those that robots found closed."""
     by_people = (await session.exec(select(ClosedCorridor.corridor))).all()
-    found = await found_closed(session)
-    by_robots = (name for name, alarms in found.items() if any(one.robot != found_by_others_than for one in alarms))
-    return frozenset((*by_people, *by_robots))
+    return frozenset((*by_people, *await found_closed(session)))
 
 
 async def all_closed(session: AsyncSession) -> ClosedCorridors:

@@ -1,5 +1,4 @@
-"""Reservation requests, as robots send them. By the schedule a request waits here for `app.traffic.service`; with the
-setting `traffic` at `at_once` everything is granted.
+"""Reservation requests, as robots send them. A request waits here for `app.traffic.service`.
 
 A grant holds until the robot reports the corridor clear; no time-out ever frees one.
 """
@@ -12,11 +11,10 @@ from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.models import ClaimRow, GrantRow, RobotRow
-from app.robots.corridors.closures import closed_names
 from app.robots.errors import UnknownCorridor
 from maps import CampusMap, CampusMapError, corridor_name
 from protocol.parts import Leg
-from protocol.to_robot import Deny, Grant
+from protocol.to_robot import Deny
 from protocol.to_server import Claim, Clear, Withdraw
 
 ASKED_ANEW: Final = "the robot has asked for another way since"
@@ -24,31 +22,18 @@ WITHDRAWN: Final = "the robot wants it no longer"
 GONE_ON: Final = "the robot is not where this way begins any more"
 
 
-async def answer(
-    session: AsyncSession, campus: CampusMap, robot: str, claim: Claim, now: datetime, by_schedule: bool = False
-) -> Grant | Deny | None:
-    """Grant a claim (or let it wait), deny what the map does not have; None if it waits, or was answered before."""
+async def answer(session: AsyncSession, campus: CampusMap, robot: str, claim: Claim, now: datetime) -> Deny | None:
+    """Let a claim wait, and deny what the map does not have; None if it waits, or was answered before."""
     if await session.get(ClaimRow, (robot, claim.claim_id)) is not None:
         return None
     unknown = _unknown(campus.track, claim.legs)
     reason = f"the map {campus.name} has no corridor {_name(unknown)}" if unknown else None
     legs = [leg.model_dump() for leg in claim.legs]
-    closed = () if by_schedule or unknown else await _closed(session, robot, claim.legs)
-    if closed:
-        reason = "this corridor is closed"
     row = ClaimRow(robot=robot, claim_id=claim.claim_id, legs=legs, at=now, goal=claim.goal, reason=reason)
-    row.granted = False if unknown or closed else None if by_schedule else True
-    if by_schedule:
-        await forget_what_waits(session, robot, ASKED_ANEW)
+    row.granted = False if unknown else None
+    await forget_what_waits(session, robot, ASKED_ANEW)
     session.add(row)
-    if unknown is not None:
-        return Deny(claim_id=claim.claim_id, avoid=(unknown,), reason=reason or "")
-    if closed:
-        return Deny(claim_id=claim.claim_id, avoid=closed, reason=reason or "")
-    if by_schedule:
-        return None
-    session.add_all(_grant(robot, claim.claim_id, leg, now) for leg in claim.legs)
-    return Grant(claim_id=claim.claim_id, legs=claim.legs)
+    return Deny(claim_id=claim.claim_id, avoid=(unknown,), reason=reason or "") if unknown is not None else None
 
 
 async def withdraw(session: AsyncSession, robot: RobotRow, message: Withdraw) -> bool:
@@ -100,22 +85,6 @@ async def held_by(session: AsyncSession, robot: str) -> tuple[Leg, ...]:
     rows = (await session.exec(held.order_by(col(GrantRow.id)))).all()
     legs = (Leg(from_post=row.from_post, to_post=row.to_post) for row in rows)
     return tuple(dict.fromkeys(legs))
-
-
-def _grant(robot: str, claim_id: str, leg: Leg, now: datetime) -> GrantRow:
-    return GrantRow(
-        robot=robot,
-        claim_id=claim_id,
-        corridor=_name(leg),
-        from_post=leg.from_post,
-        to_post=leg.to_post,
-        granted_at=now,
-    )
-
-
-async def _closed(session: AsyncSession, robot: str, legs: Sequence[Leg]) -> tuple[Leg, ...]:
-    names = await closed_names(session, found_by_others_than=robot)
-    return tuple(leg for leg in legs if _name(leg) in names)
 
 
 def _unknown(track: CampusMap, legs: Sequence[Leg]) -> Leg | None:

@@ -1,9 +1,8 @@
 """Open connections: one robot, one socket. In memory, since a socket does not outlive its process either."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection
 from typing import Protocol
 
-from app.robots.link.outbox import Kept, Waiting
 from protocol.to_robot import Watch
 
 
@@ -11,11 +10,10 @@ class Seat(Protocol):
     """A robot's open connection, as others see it. Neither call waits."""
 
     journal: str
-    token_prefix: str
     understands: Collection[str]
 
-    def wake(self, news: Sequence[Waiting] = ()) -> None:
-        """Something new is in the outbox: `news`, or it has to be looked for."""
+    def wake(self) -> None:
+        """Something new is in the outbox."""
         ...
 
     def watch(self, watch: Watch) -> bool:
@@ -66,13 +64,3 @@ class Connections:
         """This robot is watched; False if it is not connected, or does not know what that is."""
         seat = self._seats.get(robot)
         return seat is not None and seat.watch(watch)
-
-    def tokens(self, robots: Iterable[str]) -> dict[str, str]:
-        """Return the prefixes of the tokens by which those of these robots came in that are connected."""
-        return {robot: seat.token_prefix for robot in robots if (seat := self._seats.get(robot))}
-
-    def hand_over(self, news: Mapping[str, Kept]) -> None:
-        """Hand over what has just been put into outboxes: it need not be read from there."""
-        for robot, kept in news.items():
-            if seat := self._seats.get(robot):
-                seat.wake(kept.messages if seat.token_prefix == kept.token else ())

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any, Final
 
-from pydantic_core import to_json
 from sqlalchemy import Text, bindparam, cast, exists, func, insert, select, update
 from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
@@ -31,36 +30,7 @@ class Waiting:
     seq: int
     type: str
     body: str
-    may_hear: bool = True
-
-
-@dataclass(frozen=True, slots=True)
-class Kept:
-    """A message in one robot's outbox; the connection that came in with `token` may hear it at once."""
-
-    messages: Sequence[Waiting]
-    token: str | None
-
-
-async def keep_all(
-    session: AsyncSession, news: Mapping[str, Sequence[Part]], now: datetime, tokens: Mapping[str, str]
-) -> dict[str, Kept]:
-    """The same for messages to several robots, by their names; `tokens`: what those came in with who are there (their
-    prefixes). The robots' rows must not be in use in this session."""
-    connection = await connection_of(session)
-    asked = {"names": list(news), "prefixes": list(tokens.values())}
-    found = {name: (last, is_good) for name, last, is_good in (await connection.execute(_LAST, asked)).all()}
-    kept, rows, counts = {}, [], []
-    for robot, messages in news.items():
-        last, is_good = found[robot]
-        theirs = [_row(robot, seq, message, now) for seq, message in enumerate(messages, last + 1)]
-        waiting = [Waiting(row["seq"], row["type"], to_json(row["body"]).decode()) for row in theirs]
-        kept[robot] = Kept(waiting, tokens.get(robot) if is_good else None)
-        rows += theirs
-        counts.append({"of": robot, "seq": last + len(messages)})
-    await connection.execute(_KEEP, rows)
-    await connection.execute(_COUNT, counts)
-    return kept
+    may_hear: bool
 
 
 def _row(robot: str, seq: int, message: Part, now: datetime) -> dict[str, Any]:
@@ -69,18 +39,6 @@ def _row(robot: str, seq: int, message: Part, now: datetime) -> dict[str, Any]:
 
 
 _KEEP: Final = insert(MessageToRobot)
-_HAS_GOOD_TOKEN: Final = exists().where(
-    col(RobotToken.robot) == col(RobotRow.name),
-    col(RobotToken.prefix).in_(bindparam("prefixes", expanding=True)),
-    col(RobotToken.revoked_at).is_(None),
-)
-_LAST: Final = (
-    select(col(RobotRow.name), col(RobotRow.last_seq), _HAS_GOOD_TOKEN)
-    .where(col(RobotRow.name).in_(bindparam("names", expanding=True)))
-    .order_by(col(RobotRow.name))
-    .with_for_update()
-)
-_COUNT: Final = update(RobotRow).where(col(RobotRow.name) == bindparam("of")).values(last_seq=bindparam("seq"))
 
 
 async def pending(session: AsyncSession, robot: str, prefix: str, after: int, limit: int) -> Sequence[Waiting]:

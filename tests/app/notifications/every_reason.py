@@ -9,7 +9,7 @@ from itertools import cycle
 from pathlib import Path
 
 from app.core.settings import ROOT
-from app.dispatch import choice, held_up, why_orders_wait
+from app.dispatch import held_up, why_orders_wait
 from app.models import OrderState
 from app.orders.timer import NOT_FETCHED_IN_TIME
 from app.orders.views import reasons
@@ -110,7 +110,7 @@ def what_the_service_tells() -> Iterator[str]:
     """Of orders, and of messages that it or a robot could not follow."""
     yield from (NOT_PROVED, NOT_FETCHED_IN_TIME, RECALLED, UNLOADED, NOT_REPORTED, "The recipient cannot take it now.")
     yield from told_beside_alarms(ROOT / "app/robots/conversation/intake.py")
-    for module in (reasons, held_up, why_orders_wait, choice):
+    for module in (reasons, held_up, why_orders_wait):
         texts = (value for name, value in vars(module).items() if name.isupper())
         yield from (text.format(orders=3) for text in texts if isinstance(text, str))
     yield from held_up.SENTENCES.values()

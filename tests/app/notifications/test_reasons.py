@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from app.core.settings import ROOT
 from app.core.texts import LANGUAGES, catalogue
 from app.core.texts.reasons import EARLIER, PREFIXES, in_language, in_words, words_of
-from app.dispatch.choice import IdleRobot, why_nobody_comes
+from app.dispatch.held_up import NONE_CONNECTED
+from app.dispatch.why_orders_wait import BUSY, FETCHER_BUSY
 from app.orders.timer import NOT_FETCHED_IN_TIME
 from app.robots.progress.answers import RECALLED
 from app.robots.progress.evidence import UNPROVED
@@ -64,8 +65,7 @@ def test_every_fault_is_known_by_its_name(fault: object) -> None:
 
 
 def test_what_the_service_says_of_orders_is_known() -> None:
-    idle, low = IdleRobot("r1", "post1", 0.9), IdleRobot("r2", "post1", 0.1)
-    said = [why_nobody_comes(robots, connected) for robots, connected in (((), 0), ((), 1), ((low,), 1), ((idle,), 1))]
+    said = [NONE_CONNECTED, BUSY, FETCHER_BUSY, Why("charging", ()).sentence(str)]
     said += [NOT_FETCHED_IN_TIME, RECALLED, UNLOADED, NOT_REPORTED, "The recipient cannot take it now."]
     assert len(set(said)) == 9
     assert [one for one in said if words_of(one) is None] == []

@@ -19,7 +19,6 @@ from app.core.database.database import Database
 from app.core.mail import open_mailer
 from app.core.server_key import ServerKey
 from app.core.settings import Settings
-from app.dispatch.at_once.nearest import NearestRobots
 from app.dispatch.fleet_planner import FleetPlanner
 from app.dispatch.planner_process import PlannerProcess
 from app.dispatch.service import Dispatcher
@@ -187,16 +186,15 @@ class World:
         self.orders = Orders.of(Ledger(self.campus, self.settings, self.clock, feed), key, self.sign_in)
         self.fleet = Fleet(self.database, self.campus, self.settings, self.clock, feed, self.orders)
         self.intake = Intake(self.fleet)
-        self.desk = TrafficService(self.fleet) if self.settings.traffic == "schedule" else None
-        self.planner = FleetPlanner(self.fleet, self.desk, PlansHere()) if self.desk is not None else None
-        self.dispatcher = Dispatcher(self.fleet, self.planner or NearestRobots(self.fleet))
+        self.desk = TrafficService(self.fleet)
+        self.planner = FleetPlanner(self.fleet, self.desk, PlansHere())
+        self.dispatcher = Dispatcher(self.fleet, self.planner)
         self.timer = Timer(self.database, self.orders, StandingOrders(self.orders.placing, self.clock))
         self.orders.ledger.on_change.append(self.dispatcher.wake)
         self.fleet.on_change.append(self.dispatcher.wake_for_robot)
-        if self.desk is not None and self.planner is not None:
-            self.orders.ledger.on_change.append(self.desk.wake)
-            self.fleet.on_change.append(self.desk.wake)
-            self.desk.on_poll.append(self.planner.notice)
+        self.orders.ledger.on_change.append(self.desk.wake)
+        self.fleet.on_change.append(self.desk.wake)
+        self.desk.on_poll.append(self.planner.notice)
 
     async def restart(self) -> None:
         await self.database.close()
@@ -225,10 +223,9 @@ class World:
             await ask(session, self.fleet, row, Recall(command_id=new_command_id("recall"), reason="come home"))
 
     async def dispatch(self) -> None:
-        if self.desk is not None:
-            await self.desk.poll()
+        await self.desk.poll()
         await self.dispatcher.poll()
-        if self.planner is not None and await self.planner.improve():
+        if await self.planner.improve():
             await self.dispatcher.poll()
 
     async def set_online(self, name: str, online: bool) -> None:

@@ -4,7 +4,7 @@ from datetime import datetime, timedelta
 
 from app.core.settings import Settings
 from app.dispatch.charge_limits import Charges
-from app.dispatch.choice import IdleRobot, WaitingOrder
+from app.dispatch.open_work import RobotNow
 from app.models import BatterySample, GrantRow
 from app.robots.energy_use import usual_rates
 from maps import corridor_name
@@ -46,6 +46,11 @@ def driven(robot: str, at: datetime, left_at: str = "post2", freed_by: str | Non
     )
 
 
+def rested(name: str) -> RobotNow:
+    can = {"is_there": True, "takes_work": True, "gives_away": False, "has_stopped": False}
+    return RobotNow(name, "post5", 0.6, charging=False, docked=False, home="post5", held_up=None, **can)
+
+
 async def test_after_a_restart_a_robot_that_spends_more_than_others_is_known_and_given_less(
     settings: Settings, clock: SteppedClock
 ) -> None:
@@ -66,11 +71,6 @@ async def test_after_a_restart_a_robot_that_spends_more_than_others_is_known_and
         assert abs(learned.standing - THIRSTY) < 0.2
         assert fleet.spending.rates["new"] == usual_rates()
         charges = Charges(fleet.orders.ledger.ways, settings, fleet.spending.rates)
-        order = WaitingOrder("o", "post1", "post4")
-        needed = {
-            name: charges.verdict(IdleRobot(name, "post5", 0.9), 0.9, order).needed for name in fleet.spending.rates
-        }
+        needed = {name: charges.needed(rested(name), ["post1", "post4"]) for name in fleet.spending.rates}
         assert needed["thirsty"] > needed["new"]
-        between = (needed["thirsty"] + needed["new"]) / 2
-        assert charges.may_take(IdleRobot("new", "post5", between, docked=False, home="post5"), order)
-        assert not charges.may_take(IdleRobot("thirsty", "post5", between, docked=False, home="post4"), order)
+        assert charges.drives_s(rested("thirsty")) < charges.drives_s(rested("new"))

@@ -14,24 +14,23 @@ def deny(number: int) -> Deny:
 
 async def tell(fleet: Fleet, *messages: Part) -> None:
     async with fleet.database.transaction() as session:
-        await fleet.tell_all(session, {"r1": messages})
+        robot = await known_robot(session, "r1", to_change=True)
+        for message in messages:
+            await fleet.tell(session, robot, message)
 
 
 async def numbers(robot: PlayedRobot, how_many: int) -> list[int | None]:
     return [(await robot.hear("deny")).seq for _ in range(how_many)]
 
 
-async def test_what_is_handed_over_and_what_is_looked_for_go_out_in_the_order_of_their_numbers(
-    service: Service, robot: PlayedRobot
-) -> None:
+async def test_what_is_told_goes_out_in_the_order_of_its_numbers(service: Service, robot: PlayedRobot) -> None:
     token = await service.enrol("r1")
     fleet: Fleet = service.app.state.parts.fleet
     async with robot.connected(service.url, token):
         await robot.greet()
         for number in range(0, 40, 4):
             await tell(fleet, deny(number), deny(number + 1))
-            async with fleet.database.transaction() as session:
-                await fleet.tell(session, await known_robot(session, "r1", to_change=True), deny(number + 2))
+            await tell(fleet, deny(number + 2))
             await tell(fleet, deny(number + 3))
         assert await numbers(robot, 40) == list(range(1, 41))
     assert [envelope.body for envelope in robot.heard if envelope.type == "deny"] == [deny(one) for one in range(40)]

@@ -22,11 +22,10 @@ REFUSAL = "its home uc is that of r1, too: give it another in its settings, or t
 LEG = Leg(from_post="uc", to_post="azrieli")
 
 
-@pytest.fixture(params=["schedule", "at_once"])
-async def service(request: pytest.FixtureRequest, settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
-    """In the tunnels, which have several docks, with either rule of who fetches what."""
-    more = {"map": str(PLAIN_TUNNELS), "traffic": request.param}
-    async with serving(settings.model_copy(update=more), clock) as service:
+@pytest.fixture
+async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
+    """In the tunnels, which have several docks."""
+    async with serving(settings.model_copy(update={"map": str(PLAIN_TUNNELS)}), clock) as service:
         yield service
 
 

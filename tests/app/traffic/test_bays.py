@@ -19,7 +19,7 @@ POSTS = "post1", "post2", "post3", "post4", "post5"
 
 @pytest.fixture
 async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
-    async with serving(settings.model_copy(update={"map": str(MAP), "traffic": "schedule"}), clock) as service:
+    async with serving(settings.model_copy(update={"map": str(MAP)}), clock) as service:
         yield service
 
 

@@ -23,7 +23,7 @@ HOMES_WITHOUT_A_DOCK = "post1_bay2", "post4_bay2"
 
 @pytest.fixture
 async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
-    async with serving(settings.model_copy(update={"map": str(MAP), "traffic": "schedule"}), clock) as service:
+    async with serving(settings.model_copy(update={"map": str(MAP)}), clock) as service:
         yield service
 
 
