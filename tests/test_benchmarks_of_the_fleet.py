@@ -84,7 +84,7 @@ def test_the_planner_beside_another_is_judged_by_the_same_seeds() -> None:
 
 
 def test_a_honeycomb_fits_bodies_and_has_as_many_homes_and_bays_as_asked(tmp_path: Path) -> None:
-    path = Honeycomb(4, 3, homes=5, bays=2).write(tmp_path)
+    path = Honeycomb(12, homes=5, bays=2).write(tmp_path)
     assert check_file(path) == ()
     track = read_map(path).track
     assert len([post for post in track.posts.values() if not post.bay_of]) == 12

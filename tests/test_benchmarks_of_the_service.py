@@ -11,10 +11,11 @@ from typing import Any
 import pytest
 
 from benchmarks.body.report import missed
+from benchmarks.fleet_simulation.honeycomb import MOST_ROBOTS, Honeycomb
 from benchmarks.service.__main__ import PARTS
-from benchmarks.service.campus import MOST_POSTS, grid, write_campus
 from benchmarks.service.filling import KnownRobot
 from benchmarks.service.played_robots import at_home
+from maps import MapError
 from maps.check import check
 
 CHECKOUT = Path(__file__).parents[1]
@@ -36,17 +37,18 @@ def test_every_part_can_be_loaded_and_says_what_is_wanted_of_it(name: str) -> No
 
 @pytest.mark.parametrize("posts", [2, 7, 36])
 def test_robots_could_drive_on_the_made_up_campus_and_each_has_a_home_of_its_own(posts: int, tmp_path: Path) -> None:
-    assert check(grid(posts)) == ()
-    campus = write_campus(tmp_path, posts)
+    ground = Honeycomb(posts, posts)
+    assert check(ground.file()) == ()
+    campus = ground.read(tmp_path)
     fleet = at_home([KnownRobot(f"r{n}", "") for n in range(posts)], campus, Random(1))
     assert {robot.home for robot in fleet} == {bay.name for bay in campus.track.home_bays}
     assert len({robot.post for robot in fleet}) == posts
 
 
-def test_a_campus_is_no_larger_than_there_are_tags() -> None:
-    assert len(grid(MOST_POSTS).post) == MOST_POSTS
-    with pytest.raises(ValueError, match=f"2 to {MOST_POSTS} posts"):
-        grid(MOST_POSTS + 1)
+def test_a_campus_is_no_larger_than_there_are_tags(tmp_path: Path) -> None:
+    assert len(Honeycomb(MOST_ROBOTS, MOST_ROBOTS).read(tmp_path).posts) == MOST_ROBOTS
+    with pytest.raises(MapError, match="have the same tag"):
+        Honeycomb(MOST_ROBOTS + 1, MOST_ROBOTS + 1).read(tmp_path)
 
 
 @pytest.mark.nightly

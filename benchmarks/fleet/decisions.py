@@ -41,18 +41,18 @@ WANTED = [
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """So many robots with so many orders waiting, on a campus of `wide` × `wide` posts, for some hours."""
+    """So many robots with so many orders waiting, on a campus of so many `posts`, for some hours."""
 
     robots: int
     orders: int
-    wide: int
+    posts: int
     hours: float
 
 
-TWENTY: Final = Size(20, 200, 6, 3.0)
-HUNDRED: Final = Size(100, 1000, 14, 0.3)
-TWENTY_OF_MANY: Final = Size(20, 1000, 14, 0.2)
-MORE_ROBOTS: Final = (Size(20, 500, 14, 0.2), Size(60, 500, 14, 0.2), Size(180, 500, 14, 0.2))
+TWENTY: Final = Size(20, 200, 36, 3.0)
+HUNDRED: Final = Size(100, 1000, 196, 0.3)
+TWENTY_OF_MANY: Final = Size(20, 1000, 196, 0.2)
+MORE_ROBOTS: Final = (Size(20, 500, 196, 0.2), Size(60, 500, 196, 0.2), Size(180, 500, 196, 0.2))
 
 
 @dataclass
@@ -153,7 +153,7 @@ def _at_work(size: Size, capacity: int, seed: int) -> Watched:
         watching.append(Watched(rng, rounds, size.orders))
         return watching[0]
 
-    ground, demand = Honeycomb(size.wide, size.wide, size.robots), Saturated(size.orders)
+    ground, demand = Honeycomb(size.posts, size.robots), Saturated(size.orders)
     fleet = Fleet(size.robots, ground, capacity, LASTS, ROUNDS, demand=demand, pace=CALM, planning=planning)
     Run(fleet, size.hours, seed).carry_out()
     return watching[0]

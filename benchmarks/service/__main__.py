@@ -14,8 +14,8 @@ from typing import Annotated, Any
 import typer
 
 from benchmarks.body.report import log_to_error_stream, missed, say, table
+from benchmarks.fleet_simulation.honeycomb import MOST_ROBOTS
 from benchmarks.service import yardsticks
-from benchmarks.service.campus import MOST_POSTS
 from benchmarks.service.pinned import pin
 from benchmarks.service.samples import Samples
 from benchmarks.service.servers import CHECKOUT, LOAD_CORE, SERVER_CORE
@@ -39,7 +39,7 @@ def measure(
     *,
     seconds: Annotated[float, typer.Option(min=0.5, help="How long each part keeps up its load.")] = 20.0,
     rounds: Annotated[int, typer.Option(min=1, help="Turns beside the bare endpoint; fleets of instructions.")] = 5,
-    robots: Annotated[int, typer.Option(min=2, max=MOST_POSTS, help="Robots of the fleet.")] = 100,
+    robots: Annotated[int, typer.Option(min=2, max=MOST_ROBOTS, help="Robots of the fleet.")] = 100,
     followers: Annotated[int, typer.Option(min=1, help="Open pages.")] = 500,
     history: Annotated[int, typer.Option(min=100, help="Orders of the long history.")] = 100_000,
     backlog: Annotated[int, typer.Option(min=1, help="Messages that wait in the robot.")] = 2000,

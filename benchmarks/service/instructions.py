@@ -11,7 +11,7 @@ from random import Random
 from typing import Any, Final
 
 from benchmarks.body.report import Wanted, say
-from benchmarks.service.campus import campus_file, write_campus
+from benchmarks.fleet_simulation.honeycomb import Honeycomb
 from benchmarks.service.figures import times
 from benchmarks.service.filling import Account, Filling, KnownRobot, fill
 from benchmarks.service.played_robots import PlayedRobot, at_home, come_home
@@ -90,9 +90,10 @@ def _round(samples: Samples, number: int, orders: int) -> Round:
         return await filling.people(VISITORS + 1), await filling.robots(ROBOTS)
 
     with samples.folder() as folder:
-        campus = write_campus(folder, POSTS)
+        ground = Honeycomb(POSTS, POSTS)
+        campus = ground.read(folder)
         accounts, robots = fill(folder, fleet)
-        with service(folder, MAP=str(campus_file(folder))) as server:
+        with service(folder, MAP=str(ground.write(folder))) as server:
             random = Random(f"{samples.first_seed + number}/instructions")
             return asyncio.run(_measure(server, campus, accounts, robots, random, orders))
 

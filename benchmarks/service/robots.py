@@ -12,7 +12,7 @@ from random import Random
 from typing import Any, Final
 
 from benchmarks.body.report import Wanted, say
-from benchmarks.service.campus import campus_file, write_campus
+from benchmarks.fleet_simulation.honeycomb import Honeycomb
 from benchmarks.service.figures import times
 from benchmarks.service.filling import Filling, KnownRobot, fill
 from benchmarks.service.played_robots import PlayedRobot, at_home, come_home
@@ -41,9 +41,10 @@ def measure(samples: Samples) -> dict[str, Any]:
         return await filling.robots(samples.robots)
 
     with samples.folder() as folder:
-        campus = write_campus(folder, samples.robots)
+        ground = Honeycomb(samples.robots, samples.robots)
+        campus = ground.read(folder)
         known = fill(folder, fleet)
-        with service(folder, MAP=str(campus_file(folder))) as server:
+        with service(folder, MAP=str(ground.write(folder))) as server:
             return asyncio.run(_measure(samples, server, campus, known, folder / "campus-mail.sqlite"))
 
 
