@@ -26,11 +26,13 @@ NOBODY_FREE_S: Final = 0.1
 
 
 class Dispatcher:
-    """Runs in the background of the service."""
+    """Runs in the background of the service. `rest_s`: real seconds between two looks while orders wait for robots; of
+    long looks a multiple."""
 
     def __init__(self, fleet: Fleet, planner: FleetPlanner) -> None:
         self._fleet = fleet
         self._planner = planner
+        self.rest_s = NOBODY_FREE_S
         self._woken = asyncio.Event()
         self._stopped = asyncio.Event()
         self._needs_robots = True
@@ -62,7 +64,7 @@ class Dispatcher:
             if self._needs_robots and not self._stopped.is_set():
                 took_s = asyncio.get_running_loop().time() - begun_s
                 with suppress(TimeoutError):
-                    async with asyncio.timeout(min(max(NOBODY_FREE_S, REST * took_s), LONGEST_REST_S)):
+                    async with asyncio.timeout(max(self.rest_s, min(REST * took_s, LONGEST_REST_S))):
                         await self._stopped.wait()
             try:
                 async with asyncio.timeout(POLL_AGAIN_S):

@@ -38,16 +38,19 @@ T = TypeVar("T")
 @dataclass(frozen=True, slots=True)
 class Pace:
     """How often the service looks at what it is not notified of, and how long it rests between two looks, in seconds.
-    None: as shipped. What wakes it wakes it at once in any case."""
+    None: as shipped. What wakes it wakes it at once in any case. `dispatch_s`: the rest while orders wait for
+    robots."""
 
+    dispatch_s: float | None = None
     traffic_s: tuple[float, float] | None = None
     charging_s: tuple[float, float] | None = None
     eta_s: tuple[float, float] | None = None
 
 
 SHIPPED: Final = Pace()
-CALM: Final = Pace(traffic_s=(30.0, 0.2), charging_s=(60.0, 10.0), eta_s=(600.0, 300.0))
-"""For long runs: estimates are told later, what time alone changes (following, silence) counts some seconds later."""
+CALM: Final = Pace(1.0, traffic_s=(30.0, 0.5), charging_s=(60.0, 10.0), eta_s=(600.0, 300.0))
+"""For long runs: estimates are told later, what time alone changes (following, silence) counts some seconds later.
+Looks take no simulated time: the rests of traffic and dispatch are what they earn on a real machine."""
 
 
 class Worker(Protocol):
@@ -114,6 +117,8 @@ class Service:
 
     def _set(self, pace: Pace) -> None:
         parts = self.parts
+        if pace.dispatch_s is not None:
+            parts.dispatcher.rest_s = pace.dispatch_s
         paced = (parts.traffic_service, pace.traffic_s), (parts.charging_service, pace.charging_s)
         for worker, times in (*paced, (parts.eta_updates, pace.eta_s)):
             if times is not None:
