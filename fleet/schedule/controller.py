@@ -374,10 +374,10 @@ class TrafficController:
         return is_full(self._whole, post, self._robots.values())
 
     def _serves_now(self, robot: str) -> int:
-        """Count its goals that are to be served where it is."""
+        """Count its goals that are to be served where it is: not those that no way leads to now."""
         journey = self._live.planned.get(robot)
         later = 0 if journey is None else sum(leg.goals for leg in journey.legs[1:])
-        return len(self._robots[robot].goals) - later
+        return len(self._robots[robot].planned_goals(self.network)) - later
 
     def _leads_through(self, robot: str, lane: Lane) -> bool:
         journey = self._live.planned.get(robot)

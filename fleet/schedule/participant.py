@@ -45,8 +45,11 @@ class Participant:
         if start.lane is not None:
             start = replace(start, ready_s=start.arrives_s + network.crossing_s[start.post])
         home = self.home if self._comes_home(network) else None
-        goals = tuple(goal for goal in self._left(now_s) if self._can_reach(network, goal.post))
-        return Task(start, () if self.goals_wait else goals, None if self.stays else home)
+        return Task(start, self._planned(network, self._left(now_s)), None if self.stays else home)
+
+    def planned_goals(self, network: Network) -> tuple[Goal, ...]:
+        """Those of its goals that the schedule serves."""
+        return self._planned(network, self.goals)
 
     def wants(self, goals: Sequence[Goal], now_s: float) -> None:
         """These from now on. What it has begun goes on; something else begins now."""
@@ -84,6 +87,9 @@ class Participant:
         if self.home is None or isinf(network.shortest_s[start.post][self.home]):
             return False
         return start.post != self.home or start.at_home or start.post not in network.shut
+
+    def _planned(self, network: Network, goals: Sequence[Goal]) -> tuple[Goal, ...]:
+        return () if self.goals_wait else tuple(goal for goal in goals if self._can_reach(network, goal.post))
 
     def _can_reach(self, network: Network, post: int) -> bool:
         has_room = network.bays[post] > 0 or post in (self.home, self.start.post)

@@ -158,6 +158,17 @@ def test_of_what_a_robot_has_begun_only_the_rest_is_counted() -> None:
     assert done_s(920.0) == 900.0 + 60.0 + 200.0 + 60.0, "no robot could do anything while it stood"
 
 
+def test_a_goal_that_is_given_up_is_in_the_way_no_more_though_another_cannot_be_reached() -> None:
+    controller = TrafficController(line(4))
+    controller.joins("r1", post="b", home="b", at_home=True, now_s=0.0)
+    controller.close("c-d", 1.0)
+    first, second, beyond = Goal(2, 10.0, key="first"), Goal(0, 10.0, key="second"), Goal(3, 10.0, key="beyond")
+    assert controller.give("r1", [first, second, beyond], 2.0)
+    controller.served("r1", "first", 3.0)
+    assert [goal.key for goal in controller.tasks(4.0)["r1"].goals] == ["second"]
+    assert [leg.goals for leg in controller.journeys(4.0)["r1"].legs] == [0, 1, 0]
+
+
 def test_a_robot_that_goes_for_reasons_of_its_own_is_let_in() -> None:
     controller = TrafficController(line(3))
     controller.joins("r1", post="a", home="a", at_home=True, now_s=0.0)
