@@ -128,7 +128,9 @@ class LiveSchedule:
 
     def _open(self, now_s: float) -> None:
         turn_round(self.whole, self.robots, now_s)
-        self.network = open_network(self.whole, self.closed, self.robots.values())
+        network = open_network(self.whole, self.closed, self.robots.values())
+        if network != self.network:  # what is known of one that is the same stays known: all its ways, above all
+            self.network = network
 
     def _is_open(self, name: str) -> bool:
         """Tell if the robot is where its journey leads, and every corridor of that is open."""
