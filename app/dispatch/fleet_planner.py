@@ -66,7 +66,7 @@ class FleetPlanner:
         left = [order for order in waiting if changes is None or order not in changes.given]
         if left:
             has_news = _has_not_seen(schedule, work)
-            told = answers(work, decision, left)
+            told = await asyncio.to_thread(answers, work, decision, left)
             await explain(self._fleet, [one for one in told if not (has_news and one.why == NOT_PLANNED_FOR)])
         if changes:
             self._something_new.set()

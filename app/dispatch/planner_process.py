@@ -36,6 +36,7 @@ class PlannerProcess:
 
     def __init__(self) -> None:
         self._process: Process | None = None
+        self._in_turn = asyncio.Lock()
 
     @property
     def process_id(self) -> int | None:
@@ -47,7 +48,11 @@ class PlannerProcess:
         return await asyncio.to_thread(decide, problem, rng)
 
     async def improved(self, decision: Decision, budget_s: float) -> Decision | None:
-        """The best that was found within the budget; None if the process has failed."""
+        """The best that was found within the budget; None if the process has failed. Who asks meanwhile waits."""
+        async with self._in_turn:
+            return await self._improved(decision, budget_s)
+
+    async def _improved(self, decision: Decision, budget_s: float) -> Decision | None:
         is_new = self._process is None or self._process.returncode is not None
         try:
             async with asyncio.timeout(budget_s + (STARTS_WITHIN_S if is_new else GRACE_S)):

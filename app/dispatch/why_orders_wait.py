@@ -1,7 +1,7 @@
 """Why orders wait that no robot has yet, in the sentences that pages know in each language; and when they are likely to
 arrive, from the same decision."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 from app.dispatch.held_up import NONE_CONNECTED, why_held_up
@@ -31,15 +31,17 @@ class Answer(NamedTuple):
     comes_in_s: float | None = None
 
 
-def answers(work: OpenWork, decision: Decision | None, orders: Sequence[str]) -> Iterator[Answer]:
+def answers(work: OpenWork, decision: Decision | None, orders: Sequence[str]) -> list[Answer]:
     """One for each of these orders, from one decision."""
     whys = why_orders_wait(decision) if decision is not None else {}
     able = [name for name, robot in work.robots.items() if robot.is_there and robot.held_up is None]
     given = given_at_s(decision, able) if decision is not None else {}
-    for order in orders:
-        why, has_time = _said(work, whys.get(order))
-        at_s = given.get(order) if has_time else None
-        yield Answer(order, why, has_time, None if at_s is None or decision is None else at_s - decision.problem.now_s)
+    said = [(order, *_said(work, whys.get(order))) for order in orders]
+    now_s = 0.0 if decision is None else decision.problem.now_s
+    return [
+        Answer(order, why, has_time, given[order] - now_s if has_time and order in given else None)
+        for order, why, has_time in said
+    ]
 
 
 def _said(work: OpenWork, why: Why | None) -> tuple[str, bool]:

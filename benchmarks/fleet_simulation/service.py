@@ -22,9 +22,8 @@ from app.core.settings import Settings
 from app.dispatch.planner_process import PlannerProcess
 from app.robots.routes.robots import robot_link
 from app.robots.service import enrol
-from fleet.assignment.deciding import Decision, decide
+from fleet.assignment.deciding import Decision
 from fleet.assignment.improving import improved
-from fleet.assignment.problem import AssignmentProblem
 from protocol.clock import Clock
 
 MEMORY: Final = Path("/dev/shm")  # noqa: S108  # a file system in memory, where there is one
@@ -71,13 +70,10 @@ class AtOnce(Connection):
 
 @dataclass
 class PlansInRounds(PlannerProcess):
-    """Decides in no time, and improves a plan for so many rounds, whatever the machine's speed."""
+    """Improves a plan for so many rounds, whatever the machine's speed."""
 
     rng: Random
     rounds: int
-
-    async def decided(self, problem: AssignmentProblem, rng: Random) -> Decision | None:
-        return decide(problem, rng)
 
     async def improved(self, decision: Decision, budget_s: float) -> Decision | None:
         left = iter(range(self.rounds))

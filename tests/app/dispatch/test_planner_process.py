@@ -1,5 +1,6 @@
 """The planner beside the event loop: as good as one made in it, and no caller waits for it in vain."""
 
+import asyncio
 import os
 import signal
 import threading
@@ -58,6 +59,11 @@ async def test_the_first_answer_is_made_beside_the_event_loop(process: PlannerPr
     assert first.robot_of() == decision.robot_of()
     assert Asked.threads
     assert threading.get_ident() not in Asked.threads
+
+
+async def test_two_who_ask_at_once_are_answered_in_turn(process: PlannerProcess, decision: Decision) -> None:
+    both = await asyncio.gather(process.improved(decision, BUDGET_S), process.improved(decision, BUDGET_S))
+    assert [better is not None for better in both] == [True, True]
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP], ids=["dies", "hangs"])
