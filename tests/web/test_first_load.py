@@ -71,12 +71,12 @@ async def test_a_choice_whose_fields_could_not_be_fetched_is_not_marked_as_taken
     """Else a letter for later would go out at once."""
     ada = await visit(on="phone")
     page = ada.page
-    await page.route("**/order_schedule.js", lambda route: route.abort())
+    await page.route("**/order_schedule.js*", lambda route: route.abort())
     await page.goto("/")
     await page.get_by_role("radio", name="Later").dispatch_event("click")
     await expect(page.get_by_text("No response. Check your network and try again.")).to_be_visible()
     await expect(page.get_by_role("radio", name="Now")).to_be_checked()
-    await page.unroute("**/order_schedule.js")
+    await page.unroute("**/order_schedule.js*")
     await page.get_by_role("radio", name="Later").check()
     await expect(page.locator("order-schedule input").first).to_be_visible()
     await expect(page.get_by_text("No response. Check your network and try again.")).to_be_hidden()
@@ -86,14 +86,14 @@ async def test_a_choice_whose_fields_could_not_be_fetched_is_not_marked_as_taken
 async def test_an_order_whose_end_could_not_be_fetched_says_so_and_goes_out_when_it_is_tapped_again(visit):
     """The network went away between the form and the tap, on the very first visit: nothing of the page is kept yet."""
     ada = await visit(on="phone")
-    await ada.page.route("**/src/orders/send_order.js", lambda route: route.abort())
+    await ada.page.route("**/src/orders/send_order.js*", lambda route: route.abort())
     await ada.page.goto("/")
     await ada.page.get_by_label("From").select_option("Post 1")
     await ada.page.get_by_label("To", exact=True).select_option("Post 4")
     await ada.page.get_by_label("Recipient’s email").fill("bob.martin@campus.example")
     await ada.page.get_by_role("button", name="Send the robot").click()
     await expect(ada.page.get_by_text("No response. Check your network and try again.")).to_be_visible()
-    await ada.page.unroute("**/src/orders/send_order.js")
+    await ada.page.unroute("**/src/orders/send_order.js*")
     await ada.page.get_by_role("button", name="Send the robot").click()
     await ada.page.wait_for_url("**/follow.html*")
     ada.complaints.clear()  # of the answers that were cut off here

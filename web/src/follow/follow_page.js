@@ -14,6 +14,7 @@ import { t } from "../texts/texts.js";
 import { Ticking } from "../elements/ticking.js";
 import { TrafficNow } from "../live/traffic.js";
 import { orderActions } from "./order_actions.js";
+import { loadDelegates, loadDigits } from "./rare_actions.js";
 import { orderCustody, orderDetails } from "./order_details.js";
 import { arrivalWindow, orderStanding } from "./order_standing.js";
 import { orderTimeline } from "./order_timeline.js";
@@ -159,11 +160,11 @@ export class FollowPage extends PageElement {
     const isMine = order.my_role === "recipient" ? !hasEnded(order) : order.my_role === "sender" && order.my_code !== null;
     return [
       isAtAStop(order)
-        ? html`<opens-later .label=${t("follow.digits.open")} .drawing=${"dial"} .load=${() => import("./digits_entry.js")}
+        ? html`<opens-later .label=${t("follow.digits.open")} .drawing=${"dial"} .load=${loadDigits}
             .content=${() => html`<digits-entry .door=${this.#door}></digits-entry>`}></opens-later>`
         : nothing,
       isMine
-        ? html`<opens-later .label=${t("delegate.open")} .load=${() => import("./order_delegates.js")}
+        ? html`<opens-later .label=${t("delegate.open")} .load=${loadDelegates}
             .content=${() => html`<order-delegates .naming=${this.#ownNaming}></order-delegates>`}></opens-later>`
         : nothing,
     ];

@@ -16,6 +16,7 @@ import { icon } from "../elements/icon.js";
 import "../elements/opens_later.js";
 import { asking, mayRefuse, notNowWords } from "./order_actions.js";
 import { orderDetails } from "./order_details.js";
+import { loadDelegates, loadDigits } from "./rare_actions.js";
 import { orderStanding } from "./order_standing.js";
 import { orderTimeline } from "./order_timeline.js";
 import { PageElement } from "../elements/page_element.js";
@@ -106,11 +107,11 @@ export class OneOrder extends PageElement {
   #others(order) {
     return [
       isAtAStop(order)
-        ? html`<opens-later .label=${t("follow.digits.open")} .drawing=${"dial"} .load=${() => import("./digits_entry.js")}
+        ? html`<opens-later .label=${t("follow.digits.open")} .drawing=${"dial"} .load=${loadDigits}
             .content=${() => html`<digits-entry .door=${this.door}></digits-entry>`}></opens-later>`
         : nothing,
       order.my_role === "recipient" && !hasEnded(order)
-        ? html`<opens-later .label=${t("delegate.open")} .load=${() => import("./order_delegates.js")}
+        ? html`<opens-later .label=${t("delegate.open")} .load=${loadDelegates}
             .content=${() => html`<order-delegates .naming=${this.naming}></order-delegates>`}></opens-later>`
         : nothing,
     ];

@@ -1,13 +1,14 @@
 /** Tools of the mailroom that are used now and then. Each part is fetched when it is first wanted. */
 import { html } from "lit";
+import { fetched } from "../service/fetched_again.js";
 import { PRINT_PAGE, WALL_PAGE } from "../service/links.js";
 import { t } from "../texts/texts.js";
 import { icon } from "../elements/icon.js";
 
 const PARTS = {
-  "walk-up-order": () => import("./walk_up_order.js"),
-  "unsent-mail": () => import("./unsent_mail.js"),
-  "export-orders": () => import("./export_orders.js"),
+  "walk-up-order": () => fetched(() => import("./walk_up_order.js"), import.meta.resolve("./walk_up_order.js")),
+  "unsent-mail": () => fetched(() => import("./unsent_mail.js"), import.meta.resolve("./unsent_mail.js")),
+  "export-orders": () => fetched(() => import("./export_orders.js"), import.meta.resolve("./export_orders.js")),
 };
 
 export const mailroomTools = () => html`<div class="tools">

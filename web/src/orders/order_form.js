@@ -1,5 +1,6 @@
 /** The order form: from, to, for whom, what, when. */
 import { html, nothing } from "lit";
+import { fetched } from "../service/fetched_again.js";
 import { titleOf } from "../service/posts.js";
 import { t } from "../texts/texts.js";
 import { field, helpWords, problemLine } from "../elements/field.js";
@@ -131,7 +132,7 @@ export class OrderForm extends PageElement {
   /** @param {When} when */
   async #when(when) {
     this.#chosen = when;
-    const isThere = when === "now" || (await import("./order_schedule.js").then(() => true, () => false));
+    const isThere = when === "now" || (await loadSchedule().then(() => true, () => false));
     if (when !== this.#chosen) return;
     if (!isThere) return this.#stay();
     this.when = when;
@@ -220,7 +221,8 @@ function newestToEach(sent) {
   return /** @type {Order[]} */ ([...newest.values()]);
 }
 
-const loadEnd = () => import("./send_order.js");
+const loadSchedule = () => fetched(() => import("./order_schedule.js"), import.meta.resolve("./order_schedule.js"));
+const loadEnd = () => fetched(() => import("./send_order.js"), import.meta.resolve("./send_order.js"));
 /** Fetch the module that sends the form as soon as a field is used. */
 const begin = () => void loadEnd().catch(() => undefined);
 const loadOffers = () => import("./contact_offers.js");
