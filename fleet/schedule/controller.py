@@ -103,7 +103,7 @@ class TrafficController:
         start = start_at(self._whole, place, home_number, self._is_full, now_s)
         start = let_in_after(start, [one.start for one in self._robots.values()])
         self._robots[robot] = Participant(home_number, start, before.goals if before else ())
-        self._live.plan_all(now_s)
+        self._live.plan_with(robot, now_s)
 
     def is_at(self, robot: str, place: Place, home: str | None) -> bool:
         """Tell if this robot is known to be there. Which place at a post it leaves or comes to is not compared but

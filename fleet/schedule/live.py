@@ -94,9 +94,19 @@ class LiveSchedule:
         if not (self._takes(planned, self._better(planned, found, ROUNDS)) or self._takes(planned, found)):
             raise UnsoundSchedule("; ".join(problems(self.network, planned, found.journeys)))
 
+    def plan_with(self, robot: str, now_s: float) -> None:
+        """A robot is there that was not, or not there: plan it round all the others; if that fails, all."""
+        self.planned.pop(robot, None)
+        if not self._lacks_a_plan():
+            self._open(now_s)
+            tasks = self._as_known(now_s)
+            if robot in tasks and self._plan_some(tasks, [robot]):
+                return
+        self.plan_all(now_s)
+
     def plan_round_what_shut(self, now_s: float) -> None:
         """Something has been shut: plan those whose way it was anew, round all the others; if that fails, all."""
-        if not any(robot.goals_wait or robot.stays or robot.is_shut_in for robot in self.robots.values()):
+        if not self._lacks_a_plan():
             wanted = {name: _wants(task) for name, task in self._as_known(now_s).items()}
             self._open(now_s)
             tasks = self._as_known(now_s)
@@ -114,6 +124,10 @@ class LiveSchedule:
         for name, robot in self.robots.items():
             if robot.goals_wait and not robot.stands_still:
                 self.give(name, robot.goals, now_s, rounds=0)
+
+    def _lacks_a_plan(self) -> bool:
+        """Tell if a robot waits for a change before it can be planned for as it should be."""
+        return any(robot.goals_wait or robot.stays or robot.is_shut_in for robot in self.robots.values())
 
     def _as_known(self, now_s: float) -> dict[str, Task]:
         robots = self.robots.items()

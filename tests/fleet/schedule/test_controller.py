@@ -57,6 +57,18 @@ def test_one_waits_until_the_other_is_out_and_is_told_for_whom_and_how_long() ->
     assert controller.grants(50.0) == []
 
 
+@pytest.mark.parametrize("first", ["r1", "r2"])
+def test_a_robot_that_joins_leaves_the_others_in_their_order(first: str) -> None:
+    controller, goals = two_at_the_ends(), {"r1": Goal(2, 10.0, key="east"), "r2": Goal(0, 10.0, key="west")}
+    for robot in sorted(goals, key=lambda name: name != first):
+        assert controller.give(robot, [goals[robot]], 0.0, rounds=0)
+    before = controller.journeys(0.0)
+    assert before[first].done_s < min(journey.done_s for name, journey in before.items() if name != first)
+    controller.joins("r3", post="b", home="b", at_home=True, now_s=0.0)
+    after = controller.journeys(0.0)
+    assert {name: after[name] for name in before} == before
+
+
 def test_a_robot_that_is_frozen_in_a_corridor_keeps_it_and_others_go_round_or_wait() -> None:
     controller = two_at_the_ends()
     assert controller.give("r1", [Goal(1, 10.0, key="one")], 0.0)
