@@ -61,8 +61,8 @@ def test_robots_that_go_in_without_permission_are_seen_to_meet() -> None:
     ground = Ground("test_track", docks=3)
     unkept = lived(Fleet(robots=3, ground=ground, unasked=True, pace=CALM), hours=0.3, seed=2)
     kept = lived(Fleet(robots=3, ground=ground, pace=CALM), hours=0.2, seed=2)
-    assert unkept["met"]["corridor"] > 0
-    assert any("in corridor post" in one for one in unkept["meetings"])
+    assert {"corridor", "crossing"} & unkept["met"].keys(), "which of them depends on how strings hash"
+    assert any(f"in {place} post" in one for place in ("corridor", "crossing") for one in unkept["meetings"])
     assert kept["arrivals"] > 0
     assert (kept["met"], kept["in_the_way"]) == ({}, 0)
 
