@@ -25,11 +25,11 @@ from app.models import MissionRow, MissionState, Order, RobotRow, StopRow
 from app.robots.energy_use import usual_rates
 from app.robots.mission_updates import tell_mission
 from app.robots.service import Fleet, known_robot
-from fleet.charging.acceptance import Charge
 from fleet.charging.curve import ASSUMED
 from fleet.charging.demand import Demand
 from fleet.charging.docks import Need, plan_docks
 from fleet.charging.energy import Use
+from fleet.charging.going_on import Charge
 from fleet.charging.top_ups import Move, TopUpPolicy, top_ups
 from protocol.ids import new_id
 from protocol.parts import StopAction
@@ -125,7 +125,7 @@ class ChargingService:
         way_m = {dock: length_m(robot.post, dock) for dock in docks if length_m(robot.post, dock) < float("inf")}
         ways = {dock: Use(way, way / speed_m_s) for dock, way in way_m.items()}
         dock = next((one for one in docks_of(robot, work) if one in docks), None)
-        charge = Charge(robot.battery_ratio or 0.0, rates, docked=bool(robot.docked))
+        charge = Charge(robot.battery_ratio or 0.0, rates)
         return Need(robot.name, charge, self.fleet.clock.now(), ways, dock, THRESHOLDS.begin + THRESHOLDS.hysteresis)
 
     def _may_be_sent(self, robot: RobotNow, work: OpenWork) -> bool:

@@ -12,9 +12,9 @@ from typing import Final, Protocol
 
 from app.core.settings import Settings
 from app.robots.energy_use import usual_rates
-from fleet.charging.acceptance import Charge, goes_on
 from fleet.charging.docks import Need
 from fleet.charging.energy import Rates, Use
+from fleet.charging.going_on import Charge, goes_on
 from fleet.charging.levels import Thresholds
 from fleet.charging.top_ups import nearest
 from maps.ways import Ways

@@ -17,13 +17,11 @@ from benchmarks.fleet_simulation.demand import Saturated
 from benchmarks.fleet_simulation.honeycomb import Honeycomb
 from benchmarks.fleet_simulation.process import simulates_only
 from benchmarks.fleet_simulation.service import CALM, PlansInRounds
-from benchmarks.fleet_simulation.simulation import Fleet, Run
+from benchmarks.fleet_simulation.simulation import NEVER_EMPTY, Fleet, Run
 from fleet.assignment.deciding import Decision, decide
 from fleet.assignment.improving import improved, within
 from fleet.assignment.problem import AssignmentProblem
 
-LASTS: Final = 1000.0
-"""Times as long as usual packs last: robots that charge are not decided about."""
 ROUNDS: Final = 5
 CAPACITIES: Final = (1, 2, 4)
 MORE_ORDERS: Final = (100, 200, 400, 800, 1000)
@@ -57,8 +55,9 @@ MORE_ROBOTS: Final = (Size(20, 500, 196, 0.2), Size(60, 500, 196, 0.2), Size(180
 
 @dataclass
 class Watched(PlansInRounds):
-    """Decides as the service does, and keeps what it was asked and how long it took, by the clock and the processor.
-    Only of decisions that give an order to a robot, with as many orders waiting as are wanted."""
+    """Keeps what the service asked and how long the answer took, by the clock and by the processor of this thread, in
+    which simulated time has it made. Only of decisions that give an order to a robot, with as many orders waiting as
+    are wanted."""
 
     orders: int = 0
     took_s: list[float] = field(default_factory=list)
@@ -67,7 +66,7 @@ class Watched(PlansInRounds):
 
     async def decided(self, problem: AssignmentProblem, rng: Random) -> Decision | None:
         begun_s, begun_processor_s = perf_counter(), thread_time()
-        decision = decide(problem, rng)
+        decision = await super().decided(problem, rng)
         took_s, processor_s = perf_counter() - begun_s, thread_time() - begun_processor_s
         if decision is not None and len(problem.orders) >= self.orders and _gives(problem, decision):
             self.took_s.append(took_s)
@@ -93,11 +92,10 @@ def measure(samples: Samples) -> dict[str, Any]:
 def _first_answers(size: Size, capacity: int, seed: int) -> dict[str, Any]:
     """Of a fleet at work. The very first decisions, for everybody at once, are told apart."""
     watched = _at_work(size, capacity, seed)
-    first, rest = watched.asked[: size.robots], watched.took_s[size.robots :]
     figures = {
-        "decisions": len(rest),
-        "at_the_start_ms": _spread(watched.took_s[: len(first)]),
-        "first_ms": _spread(rest),
+        "decisions": len(watched.took_s) - size.robots,
+        "at_the_start_ms": _spread(watched.took_s[: size.robots]),
+        "first_ms": _spread(watched.took_s[size.robots :]),
         "first_processor_ms": _spread(watched.processor_s[size.robots :]),
     }
     say(f"  {size.robots} robots with {capacity} items each, {size.orders} orders waiting: {figures}")
@@ -154,7 +152,7 @@ def _at_work(size: Size, capacity: int, seed: int) -> Watched:
         return watching[0]
 
     ground, demand = Honeycomb(size.posts, size.robots), Saturated(size.orders)
-    fleet = Fleet(size.robots, ground, capacity, LASTS, ROUNDS, demand=demand, pace=CALM, planning=planning)
+    fleet = Fleet(size.robots, ground, capacity, NEVER_EMPTY, ROUNDS, demand=demand, pace=CALM, planning=planning)
     Run(fleet, size.hours, seed).carry_out()
     return watching[0]
 

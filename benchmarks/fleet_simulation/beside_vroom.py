@@ -19,8 +19,7 @@ from benchmarks.fleet_simulation.command import begin_with_like_hashes, commit
 from benchmarks.fleet_simulation.demand import RushHours
 from benchmarks.fleet_simulation.process import simulates_only
 from benchmarks.fleet_simulation.service import CALM, ROUNDS, PlansInRounds
-from benchmarks.fleet_simulation.shares import LASTS
-from benchmarks.fleet_simulation.simulation import Fleet, Run
+from benchmarks.fleet_simulation.simulation import NEVER_EMPTY, Fleet, Run
 from benchmarks.service.figures import percentile
 
 ROBOTS: Final = 4
@@ -75,7 +74,7 @@ def _run(job: tuple[str, int, float]) -> list[float]:
     fleet = Fleet(
         ROBOTS,
         capacity=1,
-        lasts=LASTS,
+        lasts=NEVER_EMPTY,
         rounds=ROUNDS,
         demand=RushHours(ORDERS_A_DAY),
         pace=CALM,

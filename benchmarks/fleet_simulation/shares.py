@@ -17,11 +17,9 @@ from benchmarks.fleet_simulation.grounds import Ground
 from benchmarks.fleet_simulation.people import WITH_RECIPIENT
 from benchmarks.fleet_simulation.process import simulates_only
 from benchmarks.fleet_simulation.service import CALM, ROUNDS
-from benchmarks.fleet_simulation.simulation import Fleet, Run, homes
+from benchmarks.fleet_simulation.simulation import NEVER_EMPTY, Fleet, Run, homes
 from benchmarks.fleet_simulation.unhindered import Unhindered
 
-LASTS: Final = 1000.0
-"""Times as long as usual, and full at first: what charging costs is another question."""
 FREE: Final = 5
 """So many orders always wait beyond those that robots go for."""
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
@@ -56,7 +54,7 @@ def _compared(robots: int, bays: int, hours: float, seed: int) -> dict[str, Any]
     """Orders delivered: by the service's fleet, and without conflicts."""
     ground = Ground(bays=bays)
     demand = Saturated(robots + FREE)
-    fleet = Fleet(robots, ground, capacity=1, lasts=LASTS, rounds=ROUNDS, demand=demand, pace=CALM)
+    fleet = Fleet(robots, ground, capacity=1, lasts=NEVER_EMPTY, rounds=ROUNDS, demand=demand, pace=CALM)
     letters = Run(fleet, hours, seed).carry_out().people.letters
     with tempfile.TemporaryDirectory() as folder:
         campus = ground.read(Path(folder))

@@ -36,6 +36,8 @@ from protocol.ids import ids_from
 from robot.mission.store import Store
 
 CHECKS_EVERY_S: Final = 60.0
+NEVER_EMPTY: Final = 1000.0
+"""Times as long as usual, and full at first: what charging costs is another question."""
 SETTLES_S: Final = 120.0
 """After the end what was said comes in, before the letters are counted."""
 

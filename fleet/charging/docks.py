@@ -11,9 +11,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
-from fleet.charging.acceptance import Charge
-from fleet.charging.curve import FULL, ChargeCurve
+from fleet.charging.curve import ChargeCurve
 from fleet.charging.energy import Rates, Use
+from fleet.charging.going_on import Charge
 from fleet.charging.levels import Thresholds
 
 _HOUR_S: Final = 3600.0
@@ -129,7 +129,7 @@ def _stay(need: Need, dock: str, free_s: float, curve: ChargeCurve, thresholds: 
     arrives_s = need.ready_s + way.time_s
     from_s = max(free_s, arrives_s)
     ratio = need.charge.ratio - rates.at_most(way) - (from_s - arrives_s) * standing_per_s(rates)
-    stay_s = curve.time_s(max(0.0, ratio), FULL if need.charge.until_full else need.until)
+    stay_s = curve.time_s(max(0.0, ratio), need.until)
     return Stay(need.robot, dock, from_s, from_s + stay_s, due_s(need, way, thresholds))
 
 

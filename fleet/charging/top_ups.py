@@ -117,4 +117,4 @@ def makes_room(other: Need, need: Need, thresholds: Thresholds) -> bool:
     """The one in the dock can come again later: it has enough for a while, and clearly more than the other."""
     more = other.charge.ratio - need.charge.ratio
     is_sufficient = thresholds.level(other.charge.ratio) >= Level.SUFFICIENT
-    return is_sufficient and not other.charge.until_full and more >= NEEDS_IT_MORE
+    return is_sufficient and more >= NEEDS_IT_MORE

@@ -7,11 +7,11 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fleet.charging.acceptance import Charge
 from fleet.charging.curve import ChargeCurve
 from fleet.charging.demand import Demand
 from fleet.charging.docks import DockPlan, Need, due_s, plan_docks, standing_per_s
 from fleet.charging.energy import Use, assumed_rates
+from fleet.charging.going_on import Charge
 from fleet.charging.levels import Thresholds
 from fleet.charging.top_ups import Move, TopUpPolicy, top_ups
 
@@ -26,7 +26,7 @@ def need(robot: str, ratio: float, dock: str | None = None, ready_s: float = 0.0
     ways = ways or {"a": NEAR, "b": FAR}
     if dock is not None:
         ways = {**ways, dock: Use()}
-    return Need(robot, Charge(ratio, RATES, docked=dock is not None), ready_s, ways, dock)
+    return Need(robot, Charge(ratio, RATES), ready_s, ways, dock)
 
 
 def planned(*needs: Need, docks: tuple[str, ...] = ("a", "b")) -> DockPlan:
@@ -59,13 +59,6 @@ def test_work_that_ends_when_the_docks_are_taken_makes_the_plan_worse() -> None:
     assert after.late_s > 1.0
     with_more = replace(worked, ways={"a": NEAR, "b": NEAR})
     assert planned(*low, with_more).late_s <= planned(*low, idle).late_s, "with one dock more it fits"
-
-
-def test_a_robot_that_charges_until_full_keeps_its_dock_until_then() -> None:
-    own = need("r1", 0.2, dock="a")
-    own = replace(own, charge=replace(own.charge, until_full=True))
-    plan = planned(own, need("r2", 0.4), docks=("a",))
-    assert plan.stays["r2"].from_s == CURVE.time_s(0.2, 0.99)
 
 
 def test_from_where_no_way_leads_to_a_dock_is_told() -> None:
