@@ -1,14 +1,17 @@
 """The quickest journey of one robot round everything that is taken: a search over safe time intervals (SIPP).
 
-A state is a post, the free span of one of its bays, and how many goals are done; of each state only the earliest time
-counts, since who is early can wait (Phillips and Likhachev, "SIPP: Safe Interval Path Planning for Dynamic
-Environments", ICRA 2011). Here a bay is taken when the corridor before it is entered.
+A state is a post, and how many goals are done. Who is there earlier, and may be there for as long, is not worse off,
+since who is early can wait: only the others are looked at (Phillips and Likhachev, "SIPP: Safe Interval Path Planning
+for Dynamic Environments", ICRA 2011). Here a bay is taken when the corridor before it is entered.
 
 Where crossings take time a robot either comes in, and can wait, or goes straight on into the next corridor. Then it
 cannot wait, but all that it does since it last stood can be later by its `slack_s`.
+
+Of ways that are equally quick the one that is furthest along is looked at first: in a grid there are very many.
 """
 
 import heapq
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from math import inf
 from typing import Final, NamedTuple
@@ -18,8 +21,11 @@ from fleet.schedule.network import Lane, Network
 from fleet.schedule.occupied import Occupied, Span
 
 _ALWAYS: Span = (-inf, inf)
-_STANDS: Final = -inf
-"""In a state, of one that does not go straight on; else when it can at the latest."""
+_ALIKE_DIGITS: Final = 6
+"""Of seconds: sums of the same times differ by less."""
+_Key = tuple[float, float, float]
+_State = tuple[int, bool, int, int | None]
+"""The post, if at home, how many goals are done, and the corridor behind one that goes straight on: it may not turn."""
 
 
 class Found(NamedTuple):
@@ -80,28 +86,35 @@ class _Search:
         self._within_s = within_s
         self._may_end_in_a_bay = may_end_in_a_bay
         self._left_s = _left(network, goals)
-        self._ahead: list[tuple[float, float, int, _Node]] = []
+        self._ahead: list[tuple[_Key, int, _Node]] = []
         self._pushed = 0
-        # One that goes straight on can be earlier and yet worse, if it can be later by less.
-        self._reached: dict[tuple[int, bool, int, float, float], float] = {}
+        # When it is there, and until when it may be there: who comes later may be able to stay longer.
+        self._reached: defaultdict[_State, list[Span]] = defaultdict(list)
 
     def run(self, start: Start) -> Found | None:
         until_s = inf if start.at_home else self._stay_of(start)
         self._reach(standing(start), until_s, None)
         if start.lane is not None and self._crossing_s[start.post] and not start.crosses and until_s > -inf:
             self._pass(standing(start), until_s, None, 0.0)
-        ahead, reached = self._ahead, self._reached
-        while ahead:
-            node = heapq.heappop(ahead)[3]
-            leg = node.leg
-            if node.goals == len(self._goals) and not node.passes and self._may_end(leg, node.until_s):
+        while self._ahead:
+            node = heapq.heappop(self._ahead)[2]
+            if node.goals == len(self._goals) and not node.passes and self._may_end(node.leg, node.until_s):
                 return _found(node)
-            latest_s = leg.ready_s + node.slack_s if node.passes else _STANDS
-            state = (leg.post, leg.at_home, node.goals, node.until_s, latest_s)
-            if reached.get(state, inf) > leg.ready_s:
-                reached[state] = leg.ready_s
+            if not self._is_worse(node):
+                self._reached[_state_of(node)].append(_span_of(node))
                 self._go_on(node)
         return None
+
+    def _is_worse(self, node: _Node) -> bool:
+        """Tell if the same state is known with an earlier time, and with one as late."""
+        since_s, until_s = _span_of(node)
+        known = self._reached.get(_state_of(node), ())
+        return any(one[0] <= since_s and one[1] >= until_s for one in known)
+
+    def _push(self, key: _Key, node: _Node) -> None:
+        if key[0] < self._within_s and not self._is_worse(node):
+            self._pushed += 1
+            heapq.heappush(self._ahead, (key, self._pushed, node))
 
     def _may_end(self, leg: Leg, until_s: float) -> bool:
         """At home; or, while work is planned, wherever it may stay. Beside the bays of another post is not at home."""
@@ -151,8 +164,7 @@ class _Search:
         since_s, until_s = span
         ready_s, travel_s = node.leg.ready_s, lane.travel_s
         earliest_s = ready_s if ready_s > since_s else since_s
-        known_s = self._reached.get((lane.end, at_home, node.goals, until_s, _STANDS), inf)
-        latest_s = min(node.until_s, until_s - travel_s, known_s - travel_s)
+        latest_s = min(node.until_s, until_s - travel_s)
         for opens_s, closes_s in windows:
             if closes_s < earliest_s:
                 continue
@@ -201,11 +213,9 @@ class _Search:
         if before is not None and before.passes:
             slack_s = min(slack_s, before.slack_s - later_s)
         passing = leg._replace(ready_s=leg.arrive_s, over_s=0.0)
-        key = self._key(leg.post, served, leg.arrive_s, done_s)
-        if key[0] < self._within_s and key[1] < inf:
-            self._pushed += 1
-            node = _Node(passing, served, done_s, until_s, before, True, slack_s, later_s)
-            heapq.heappush(self._ahead, (*key, self._pushed, node))
+        latest_s = until_s - self._crossing_s[leg.post]
+        node = _Node(passing, served, done_s, until_s, before, True, min(slack_s, latest_s - leg.arrive_s), later_s)
+        self._push(self._key(leg.post, served, leg.arrive_s, done_s), node)
 
     def _reach(self, leg: Leg, until_s: float, before: _Node | None, later_s: float = 0.0) -> None:
         """Serve what can be served, or less: a robot that serves all of it may then be in another's way."""
@@ -213,26 +223,35 @@ class _Search:
         served, done_s = (0, ready_s) if before is None else (before.goals, before.done_s)
         goals, done = self._goals, served
         while ready_s <= until_s:
-            key = self._key(post, done, ready_s, done_s)
-            if key[0] < self._within_s and key[1] < inf:
-                self._pushed += 1
-                reached = leg if done == served else leg._replace(goals=done - served, ready_s=ready_s)
-                node = _Node(reached, done, done_s, until_s, before, False, inf, later_s)
-                heapq.heappush(self._ahead, (*key, self._pushed, node))
+            reached = leg if done == served else leg._replace(goals=done - served, ready_s=ready_s)
+            node = _Node(reached, done, done_s, until_s, before, False, inf, later_s)
+            self._push(self._key(post, done, ready_s, done_s), node)
             if done == len(goals) or goals[done].post != post:
                 break
             goal = goals[done]
             ready_s = (ready_s if ready_s > goal.not_before_s else goal.not_before_s) + goal.handling_s
             done, done_s = done + 1, ready_s
 
-    def _key(self, post: int, done: int, ready_s: float, done_s: float) -> tuple[float, float]:
-        """No end that is reached from here is better than this: when the last goal is done, then when it is home."""
-        way_s = self._shortest_s[post]
+    def _key(self, post: int, done: int, ready_s: float, done_s: float) -> _Key:
+        """No end that is reached from here is better than this: when the last goal is done, then where it may stay
+        first; of a way home when it is there. Among equals: who is done, then who is furthest along."""
         if done < len(self._goals):
-            return ready_s + way_s[self._goals[done].post] + self._left_s[done], ready_s
+            soonest_s = ready_s + self._shortest_s[post][self._goals[done].post] + self._left_s[done]
+            return round(soonest_s, _ALIKE_DIGITS), 1.0, -ready_s
         if self._may_end_in_a_bay or self._home is None:
-            return done_s, ready_s
-        return done_s, ready_s + way_s[self._home]
+            return done_s, 0.0, ready_s
+        return round(ready_s + self._shortest_s[post][self._home], _ALIKE_DIGITS), 0.0, -ready_s
+
+
+def _state_of(node: _Node) -> _State:
+    leg = node.leg
+    behind = leg.lane.corridor if node.passes and leg.lane is not None else None
+    return leg.post, leg.at_home, node.goals, behind
+
+
+def _span_of(node: _Node) -> Span:
+    ready_s = node.leg.ready_s
+    return ready_s, ready_s + node.slack_s if node.passes else node.until_s
 
 
 def _has_passed(node: _Node | None, post: int) -> bool:

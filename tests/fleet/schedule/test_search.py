@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 from random import Random
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -213,3 +214,43 @@ def ring(posts: int) -> Network:
         lanes[b].append(Lane(number, 1, b, a, 10.0))
     names = tuple(f"p{post}" for post in range(posts + 1))
     return Network(names, (1,) * (posts + 1), tuple(f"{a}-{b}" for a, b in edges), tuple(map(tuple, lanes)))
+
+
+class Looked(tuple[tuple[Lane, ...], ...]):
+    """Lanes by post, and how often any were looked at."""
+
+    times = 0
+
+    def __getitem__(self, post: Any) -> Any:
+        self.times += 1
+        return super().__getitem__(post)
+
+
+def grid(wide: int) -> Network:
+    """All corridors take equally long, so that very many ways do."""
+    posts = range(wide * wide)
+    edges = [(post, post + 1) for post in posts if (post + 1) % wide]
+    edges += [(post, post + wide) for post in posts if post + wide < len(posts)]
+    lanes: list[list[Lane]] = [[] for _ in posts]
+    for number, (a, b) in enumerate(edges):
+        lanes[a].append(Lane(number, 0, a, b, 100.0))
+        lanes[b].append(Lane(number, 1, b, a, 100.0))
+    names, bays = tuple(f"p{post}" for post in posts), (2,) * len(posts)
+    return Network(names, bays, tuple(map(str, edges)), tuple(map(tuple, lanes)), 0.1, (15.0,) * len(posts))
+
+
+def test_of_very_many_ways_that_are_equally_quick_few_are_looked_at() -> None:
+    """Others come by everywhere at times of their own, so that each way is free for another while."""
+    rng, looked = Random(1), Looked(grid(10).lanes)
+    network = replace(grid(10), lanes=looked)
+    taken = Occupied(network)
+    for lane in [lane for out in grid(10).lanes for lane in out]:
+        for number in range(2):
+            at_s = rng.uniform(0.0, 10_000.0)
+            by = Start(lane.end, True, at_s + 130.0, at_s, lane, at_s + 115.0)
+            taken.hold(f"{lane.corridor} {lane.backwards} {number}", by, at_s + 130.0)
+    start, goals = Start(0, True, 0.0, 0.0), (Goal(99, 60.0), Goal(9, 60.0))
+    assert network.shortest_s[0][99] < inf
+    looked.times = 0
+    assert find_work(network, taken, start, goals, 0) is not None
+    assert looked.times < len(network.posts)
