@@ -83,7 +83,7 @@ class BayTrafficSchedule(TrafficSchedule):
         if where.waits_before is not None and one.request.legs[0][0] == where.waits_before:
             return self._over_the_post_ahead(one, where.waits_before, now_s)
         if where.on_crossing and not where.towards and one.request.legs[0][0] == where.post:
-            return self._off_the_crossing(one, where, now_s)
+            return self._off_the_crossing(one, where)
         return None
 
     def _out_of_bay(self, one: RobotLocation, where: Place, now_s: float) -> Verdict | None:
@@ -104,14 +104,14 @@ class BayTrafficSchedule(TrafficSchedule):
         move = self.controller.next_move(one.robot, now_s)
         if isinstance(move, ComeIn) and isinstance(answer, Waits):
             return self._aside(one, bay, post, now_s, asked=False)
-        return self._waits(one, asked, answer, now_s)
+        return self._waits(one, asked, answer)
 
     def _aside(self, one: RobotLocation, bay: str, post: str, now_s: float, *, asked: bool) -> Verdict:
         answer = self.controller.comes_in(one.robot, post, now_s)
         home = one.home_bay if one.home_bay and self.track.address_of(one.home_bay) == post else None
         if home not in (None, bay) and isinstance(answer, LetIn) and answer.at_home:
             return MayEnter(one.robot, ((bay, post), (post, home)), aside=not asked)
-        return self._waits(one, (post, home or bay), answer, now_s)
+        return self._waits(one, (post, home or bay), answer)
 
     def _over_the_post_ahead(self, one: RobotLocation, post: str, now_s: float) -> Verdict | None:
         """From the end of its corridor straight on, or into a bay."""
@@ -122,19 +122,19 @@ class BayTrafficSchedule(TrafficSchedule):
             answer = self.controller.claims(one.robot, *leg, now_s)
             if isinstance(answer, Granted):
                 return MayEnter(one.robot, (leg,), aside=leg != asked)
-            return self._waits(one, leg, answer, now_s)
+            return self._waits(one, leg, answer)
         if not isinstance(move, ComeIn):
             return None
         if self._post(move.post) != post:  # one stands still on the crossing: back to where it came from
             return Elsewhere(one.robot, (self._post(move.post), post))
         bay = self._bay_at(one, post, at_home=move.at_home)
         if bay is None:
-            return self._waits(one, asked, None, now_s)
+            return self._waits(one, asked, None)
         let_in = self.controller.comes_in(one.robot, post, now_s)
         if isinstance(let_in, LetIn):
             legs = ((post, bay), *self._out_of_silence(one, post, bay))
             return MayEnter(one.robot, legs, aside=self._is_lane(asked))
-        return self._waits(one, asked, let_in, now_s)
+        return self._waits(one, asked, let_in)
 
     def _out_of_silence(self, one: RobotLocation, post: str, bay: str) -> tuple[Leg, ...]:
         """From a bay without network it cannot ask for a way out. It gets the one by which it comes: no report of it
@@ -143,12 +143,12 @@ class BayTrafficSchedule(TrafficSchedule):
             return ()
         return (bay, post), (post, one.occupies.place)
 
-    def _off_the_crossing(self, one: RobotLocation, where: Place, now_s: float) -> Verdict:
+    def _off_the_crossing(self, one: RobotLocation, where: Place) -> Verdict:
         """It could not get into its bay, or was put on the crossing: into another bay, which is kept for it."""
         assert one.request is not None  # noqa: S101  # only those are asked
         bay = self._bay_at(one, where.post, at_home=where.at_home) or self._bay_at(one, where.post, at_home=False)
         if bay is None or bay == bay_ahead(self.track, one, where.post):
-            return self._waits(one, one.request.legs[0], None, now_s)
+            return self._waits(one, one.request.legs[0], None)
         return MayEnter(one.robot, ((where.post, bay),), aside=one.request.legs[0] != (where.post, bay))
 
     def _bay_at(self, one: RobotLocation, post: str, *, at_home: bool) -> str | None:
@@ -156,12 +156,12 @@ class BayTrafficSchedule(TrafficSchedule):
             return one.home_bay
         return free_bay(self.track, post, one, self._known.values(), self._closed)
 
-    def _waits(self, one: RobotLocation, leg: Leg, answer: Waits | Denied | LetIn | None, now_s: float) -> HasToWait:
+    def _waits(self, one: RobotLocation, leg: Leg, answer: Waits | Denied | LetIn | None) -> HasToWait:
         if isinstance(answer, Waits):
-            return HasToWait(one.robot, self._addresses(leg), answer.robots, max(0.0, answer.until_s - now_s))
+            return HasToWait(one.robot, self._addresses(leg), answer.robots, in_turn=True)
         closed = self._is_lane(leg) and self.track.corridor(*leg).name in self._closed
         before = dict.fromkeys((*self._holders(leg), *self._in_the_way(one, one.request.goal if one.request else "")))
-        return HasToWait(one.robot, self._addresses(leg), tuple(before), None, closed=closed)
+        return HasToWait(one.robot, self._addresses(leg), tuple(before), closed=closed)
 
     # Names.
 

@@ -43,12 +43,14 @@ class MayEnter:
 
 @dataclass(frozen=True)
 class HasToWait:
-    """For this corridor, for these robots, until about so many seconds from now. `closed`: until it is opened."""
+    """For this corridor, for these robots. `in_turn`: until they have gone on, about `for_s` from now; `closed`: until
+    it is opened."""
 
     robot: str
     leg: Leg
     robots: tuple[str, ...]
-    for_s: float | None
+    in_turn: bool = False
+    for_s: float | None = None
     closed: bool = False
 
 
@@ -205,6 +207,14 @@ class TrafficSchedule:
                 self._note_grant(one, verdict, now_s)
             yield verdict
 
+    def timed(self, verdicts: Iterable[Verdict], now_s: float) -> list[Verdict]:
+        """The same with how long robots have to wait: it is not known before all that may be granted is."""
+        return [self._timed(one, now_s) if isinstance(one, HasToWait) and one.in_turn else one for one in verdicts]
+
+    def _timed(self, verdict: HasToWait, now_s: float) -> HasToWait:
+        goes_on_s = self.controller.goes_on_s(verdict.robot, now_s)
+        return verdict if goes_on_s is None else replace(verdict, for_s=max(0.0, goes_on_s - now_s))
+
     def _verdict(self, one: RobotLocation, knows_detours: bool, now_s: float) -> Verdict:
         assert one.request is not None  # noqa: S101  # only those are asked
         first = one.request.first
@@ -215,7 +225,7 @@ class TrafficSchedule:
         leg = self._names(leads) if leads is not None else None
         asked = leg if leg in first else first[0]
         if len(first) > 1 and (holders := [name for leg in first for name in self._holders(leg)]):
-            return HasToWait(one.robot, asked, tuple(holders), None)
+            return HasToWait(one.robot, asked, tuple(holders))
         answer = self.controller.claims(one.robot, *asked, now_s)
         if isinstance(answer, Denied) and answer.instead is not None:
             if not knows_detours:
@@ -229,9 +239,9 @@ class TrafficSchedule:
             ahead = self.controller.goes_on(one.robot, one.request.then, now_s)
             return MayEnter(one.robot, (asked, *others, *map(self._names, ahead)))
         if isinstance(answer, Waits):
-            return HasToWait(one.robot, asked, answer.robots, max(0.0, answer.until_s - now_s))
+            return HasToWait(one.robot, asked, answer.robots, in_turn=True)
         before = dict.fromkeys((*self._holders(asked), *self._in_the_way(one, one.request.goal)))
-        return HasToWait(one.robot, asked, tuple(before), None, closed=corridor_name(*asked) in self._closed)
+        return HasToWait(one.robot, asked, tuple(before), closed=corridor_name(*asked) in self._closed)
 
     def _holders(self, leg: Leg) -> tuple[str, ...]:
         corridor = corridor_name(*leg)

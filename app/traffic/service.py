@@ -91,7 +91,7 @@ class TrafficService:
         before, schedule.vanished = schedule.vanished, self._vanished(snapshot, now)
         schedule.follow(snapshot, left, now_s)
         understood = {name: self._fleet.connections.understands(name, DETOUR) for name in snapshot.robots}
-        verdicts, said = list(schedule.verdicts(understood, now_s)), [True]
+        verdicts, said = schedule.timed([*schedule.verdicts(understood, now_s)], now_s), [True]
         if verdicts or before != schedule.vanished:
             async with self._fleet.database.transaction() as session:
                 await self._tell_of_vanished(session, snapshot, before, schedule.vanished, now)

@@ -23,12 +23,10 @@ class LetIn:
 
 @dataclass(frozen=True)
 class Waits:
-    """Not yet. `robots` have to go on before; `until_s`: about when, by the schedule. `lane` None: it waits for the
-    crossing alone."""
+    """Not yet. `robots` have to go on before. `lane` None: it waits for the crossing alone."""
 
     lane: Lane | None
     robots: tuple[str, ...]
-    until_s: float
 
 
 @dataclass(frozen=True)

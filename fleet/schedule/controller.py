@@ -19,7 +19,7 @@ In memory and pure: what it knows can be built again from the grants, the places
 """
 
 from collections.abc import Mapping, Sequence
-from math import inf
+from math import inf, isinf
 from random import Random
 from typing import Final
 
@@ -208,6 +208,13 @@ class TrafficController:
                 answers.append((name, answer))
         return answers
 
+    def goes_on_s(self, robot: str, now_s: float) -> float | None:
+        """About when one that waits is to go on, by the schedule; None where that leads nowhere. To be asked when all
+        is answered: each grant has the schedule timed anew."""
+        journey = self._live.journeys(now_s).get(robot)
+        at_s = next_move_s(self._robots[robot].start, journey)
+        return None if isinf(at_s) else at_s
+
     def next_move(self, robot: str, now_s: float) -> Move | None:
         """What it is to do where it is, or where it comes to. At the end of its corridor it goes straight on if it has
         nothing to do there and the schedule has it enter the next corridor about when it is there; else it comes in.
@@ -293,7 +300,7 @@ class TrafficController:
             return Denied(lane, None if journey is None else self._coming(journey))
         others = self._live.waits_for(robot, now_s, journey)
         if others or not self._may_leave(its):
-            return Waits(lane, others, self._live.journeys(now_s)[robot].legs[1].enter_s)
+            return Waits(lane, others)
         unserved = self._serves_now(robot) > 0
         self._live.planned[robot] = journey
         self._lets_in(robot, lane, now_s)
@@ -323,7 +330,7 @@ class TrafficController:
             return LetIn(post, start.at_home)
         others = self._waits_to_cross(robot, post, now_s)
         if start.post != post or start.is_on_its_way or journey is None or others or post in self.network.shut:
-            return Waits(start.lane, others, now_s if journey is None else self._moves_s(robot))
+            return Waits(start.lane, others)
         its.asks_in = False
         if makes_room:
             its.start = aside(start, over_s, now_s)

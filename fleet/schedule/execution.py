@@ -11,6 +11,7 @@ but for one that is late no other waits (`waits_for`).
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import islice
 from math import inf
 
 from fleet.schedule.course import Course, OutOfOrderError, Travel
@@ -37,10 +38,8 @@ def waits_for(
     for other, start in starts.items():
         if other == robot:
             continue
-        coming = journeys[other].legs[1:] if other in journeys else ()
-        if any(_goes_before((leg, other), (mine, robot)) for leg in coming) or any(
-            _is_in_the_way(network, one, mine, now_s) for one in (start, *start.on_the_way())
-        ):
+        goes_before = other in journeys and _goes_before(journeys[other], other, mine, robot)
+        if goes_before or any(_is_in_the_way(network, one, mine, now_s) for one in (start, *start.on_the_way())):
             yield other
     if not mine.at_home:
         there = [
@@ -175,15 +174,17 @@ def _at_its_end(task: Task, leg: Leg) -> Task:
     return replace(task, start=replace(start, arrives_s=leg.arrive_s, ready_s=start.ready_s + by_s))
 
 
-def _goes_before(theirs: tuple[Leg, str], mine: tuple[Leg, str]) -> bool:
-    """Tell if another's entry to come is before mine, at the same corridor or at the same post. Entries of one moment
-    do not need each other; they go by name, so that the order is one."""
-    (leg, other), (my_leg, me) = theirs, mine
-    if (leg.enter_s, other) > (my_leg.enter_s, me):
-        return False
-    same_post = leg.post == my_leg.post and not leg.at_home and not my_leg.at_home
-    same_corridor = leg.lane is not None and my_leg.lane is not None and leg.lane.corridor == my_leg.lane.corridor
-    return same_post or same_corridor
+def _goes_before(journey: Journey, other: str, my_leg: Leg, me: str) -> bool:
+    """Tell if an entry of another's to come is before mine, at the same corridor or at the same post. Entries of one
+    moment do not need each other; they go by name, so that the order is one."""
+    for leg in islice(journey.legs, 1, None):
+        if (leg.enter_s, other) > (my_leg.enter_s, me):
+            return False  # and so are all behind it
+        same_post = leg.post == my_leg.post and not leg.at_home and not my_leg.at_home
+        same_corridor = leg.lane is not None and my_leg.lane is not None and leg.lane.corridor == my_leg.lane.corridor
+        if same_post or same_corridor:
+            return True
+    return False
 
 
 def _is_in_the_way(network: Network, start: Start, mine: Leg, now_s: float) -> bool:
