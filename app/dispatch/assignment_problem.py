@@ -37,7 +37,7 @@ class ProblemOfWork:
     charges: Charges
 
     def of(self, work: OpenWork, traffic: TrafficController, now: datetime, now_s: float) -> AssignmentProblem:
-        keys = {name: [goal.key for goal in traffic.goals(name)] for name in traffic.tasks(now_s)}
+        keys = {name: [goal.key for goal in traffic.goals(name)] for name in traffic.can_be_planned()}
         placed = _Placed(work, traffic, {key for theirs in keys.values() for key in theirs}, self.settings, now, now_s)
         orders = {one.id: one for one in placed.orders()}
         robots = {name: self._able(work, orders, name, keys[name]) for name in keys if name in work.robots}

@@ -6,6 +6,7 @@ The promised window is kept beside it and is not made later here: a robot that c
 tells of it.
 """
 
+import asyncio
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
@@ -19,7 +20,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.core.database.database import after_commit, connection_of
 from app.core.polling import PollingLoop
-from app.dispatch.forecasts import Stop, by_schedule
+from app.dispatch.forecasts import Foresight, Stop
 from app.eta.records import Intervals, keep_under_way
 from app.models import MissionRow, MissionState, Order, OrderState, RobotRow, StopRow
 from app.orders.ledger import Expected
@@ -29,6 +30,7 @@ from app.robots.service import Fleet
 from app.traffic.service import TrafficService
 from fleet.eta.arrivals import Estimates
 from fleet.eta.calibration import Basis
+from fleet.eta.forecast import forecast
 from fleet.eta.intervals import Interval
 from protocol.parts import StopAction
 
@@ -128,7 +130,11 @@ class EtaUpdates:
         estimates, schedule = self.fleet.orders.ledger.estimates, self.desk.schedule
         if schedule is None:
             return {}
-        return await by_schedule(estimates, schedule.controller, stops, now, self.fleet.clock.now(), self._rng)
+        async with self.desk.in_turn:
+            controller, now_s = schedule.controller, self.fleet.clock.now()
+            network, planned = controller.network, await asyncio.to_thread(controller.tasks_and_journeys, now_s)
+        sees = Foresight(estimates, network, {stop.id: stop for stop in stops}, now, now_s, self._rng)
+        return await asyncio.to_thread(forecast, network, *planned, now_s, sees.chance())
 
     async def _tell(self, news: Sequence[UnderWay], now: datetime) -> None:
         """A few in one transaction: what robots report in that time waits for it."""

@@ -79,7 +79,8 @@ class FleetPlanner:
 
     async def _decide(self, work: OpenWork, schedule: TrafficSchedule) -> Decision | None:
         clock = self._fleet.clock
-        problem = self._scenes.of(work, schedule.controller, clock.utc(), clock.now())
+        async with self._desk.in_turn:
+            problem = await asyncio.to_thread(self._scenes.of, work, schedule.controller, clock.utc(), clock.now())
         return await self._process.decided(problem, self._rng)
 
     async def _carry_out(self, schedule: TrafficSchedule | None, decision: Decision, changes: Changes) -> bool:
@@ -91,17 +92,24 @@ class FleetPlanner:
         finally:
             self.own.clear()
         # Else the schedule finds a way of its own to what robots have now before them, as after a restart.
-        if schedule is not None and schedule is self._desk.schedule and not changes.taken:
-            controller = schedule.controller
-            adopt(controller, decision, schedule.known, self._fleet.clock.now())
+        if schedule is not None and not changes.taken:
+            await self._adopt(schedule, decision)
         return True
+
+    async def _adopt(self, schedule: TrafficSchedule, decision: Decision) -> bool:
+        """False if it cannot be carried out any more."""
+        async with self._desk.in_turn:
+            if schedule is not self._desk.schedule:
+                return False
+            now_s = self._fleet.clock.now()
+            return await asyncio.to_thread(adopt, schedule.controller, decision, schedule.known, now_s)
 
     # And better.
 
     def notice(self) -> None:
         """A robot that cannot be planned for any more: what it has not loaded is for others."""
         schedule = self._desk.schedule
-        planned = frozenset(schedule.controller.tasks(self._fleet.clock.now())) if schedule else self._planned
+        planned = frozenset(schedule.controller.can_be_planned()) if schedule else self._planned
         if planned != self._planned:
             self._planned = planned
             self._something_new.set()
@@ -142,17 +150,14 @@ class FleetPlanner:
             return False
         changes = changes_of(work, better)
         if not changes:
-            return self._goes_by_now(schedule, decision, better)
+            return await self._goes_by_now(schedule, decision, better)
         is_written = await self._carry_out(schedule, better, changes)
         log.info("improved", is_written=is_written, taken=len(changes.taken), saves_s=decision.cost_s - better.cost_s)
         return is_written
 
-    def _goes_by_now(self, schedule: TrafficSchedule, decision: Decision, better: Decision) -> bool:
+    async def _goes_by_now(self, schedule: TrafficSchedule, decision: Decision, better: Decision) -> bool:
         """Every order stays with its robot, and only the timetable is another: nothing of that is written down."""
-        is_better = better.cost_s < decision.cost_s - SLACK_S
-        if not is_better or schedule is not self._desk.schedule:
-            return False
-        is_adopted = adopt(schedule.controller, better, schedule.known, self._fleet.clock.now())
+        is_adopted = better.cost_s < decision.cost_s - SLACK_S and await self._adopt(schedule, better)
         if is_adopted:
             self._desk.wake()
             log.info("timetable_improved", saves_s=decision.cost_s - better.cost_s)

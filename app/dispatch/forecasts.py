@@ -1,7 +1,6 @@
 """Forecasts of all stops that robots have before them, by the schedule."""
 
-import asyncio
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from random import Random
@@ -9,9 +8,7 @@ from typing import Final, NamedTuple
 
 from fleet.eta.arrivals import Estimates
 from fleet.eta.durations import Kind
-from fleet.eta.forecast import Chance, forecast
-from fleet.eta.intervals import Interval
-from fleet.schedule.controller import TrafficController
+from fleet.eta.forecast import Chance
 from fleet.schedule.journey import Goal
 from fleet.schedule.network import Lane, Network
 from protocol.parts import StopAction
@@ -67,12 +64,3 @@ class Foresight:
         thing = self.estimates.stop(kind, stop.arrived_at or self.now)
         over_s = max(0.0, (self.now - stop.arrived_at).total_seconds()) if stop.arrived_at else 0.0
         return self.estimates.durations.draw_s(thing, self.rng, over_s) - over_s
-
-
-async def by_schedule(
-    estimates: Estimates, controller: TrafficController, stops: Sequence[Stop], now: datetime, now_s: float, rng: Random
-) -> dict[str, Interval]:
-    """In how many seconds each stop is reached, by its id; without those that are in no schedule yet."""
-    network, tasks, journeys = controller.network, controller.tasks(now_s), controller.journeys(now_s)
-    sees = Foresight(estimates, network, {stop.id: stop for stop in stops}, now, now_s, rng)
-    return await asyncio.to_thread(forecast, network, tasks, journeys, now_s, sees.chance())

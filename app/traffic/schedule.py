@@ -195,6 +195,13 @@ class TrafficSchedule:
 
     # What follows.
 
+    def follow_and_answer(
+        self, snapshot: TrafficSnapshot, left_at: Mapping[int, str], understood: Mapping[str, bool], now_s: float
+    ) -> list[Verdict]:
+        """Both, with how long robots have to wait: that is not known before all that may be granted is."""
+        self.follow(snapshot, left_at, now_s)
+        return self._timed([*self.verdicts(understood, now_s)], now_s)
+
     def verdicts(self, understood: Mapping[str, bool], now_s: float) -> Iterator[Verdict]:
         """On every claim that waits; granted is at once what may be. `understood`: who knows what a detour is."""
         for name, one in self._known.items():
@@ -207,13 +214,10 @@ class TrafficSchedule:
                 self._note_grant(one, verdict, now_s)
             yield verdict
 
-    def timed(self, verdicts: Iterable[Verdict], now_s: float) -> list[Verdict]:
-        """The same with how long robots have to wait: it is not known before all that may be granted is."""
-        return [self._timed(one, now_s) if isinstance(one, HasToWait) and one.in_turn else one for one in verdicts]
-
-    def _timed(self, verdict: HasToWait, now_s: float) -> HasToWait:
-        goes_on_s = self.controller.goes_on_s(verdict.robot, now_s)
-        return verdict if goes_on_s is None else replace(verdict, for_s=max(0.0, goes_on_s - now_s))
+    def _timed(self, verdicts: Sequence[Verdict], now_s: float) -> list[Verdict]:
+        waiting = [one.robot for one in verdicts if isinstance(one, HasToWait) and one.in_turn]
+        for_s = {name: max(0.0, at_s - now_s) for name, at_s in self.controller.go_on_s(waiting, now_s).items()}
+        return [replace(one, for_s=for_s.get(one.robot)) if isinstance(one, HasToWait) else one for one in verdicts]
 
     def _verdict(self, one: RobotLocation, knows_detours: bool, now_s: float) -> Verdict:
         assert one.request is not None  # noqa: S101  # only those are asked

@@ -4,7 +4,8 @@ What robots say is written down by the intake; here it is looked at, and what fo
 that fails the schedule is made anew from the database, so that it never knows of a grant that was not given.
 """
 
-from collections.abc import Awaitable, Callable, Sequence
+import asyncio
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime, timedelta
 from random import Random
@@ -56,6 +57,8 @@ class TrafficService:
         """Called after each look that has found something new, which is in the schedule then."""
         self._charges_first = charges_first
         self._rng = Random(0)
+        self.in_turn = asyncio.Lock()
+        """The schedule is worked on beside the event loop, by one at a time."""
 
     @property
     def schedule(self) -> TrafficSchedule | None:
@@ -80,18 +83,14 @@ class TrafficService:
 
     async def poll(self) -> None:
         """Take over what has changed, and answer who can be answered."""
-        now, now_s = self._fleet.clock.utc(), self._fleet.clock.now()
         schedule = self._schedule or self._new_schedule()
-        async with self._fleet.database.reading() as session:
-            snapshot = await read_traffic(session, self._fleet.campus)
-            if self._schedule is None:
-                snapshot = await where_they_left(session, snapshot)
-            held = [hold.grant_id for one in schedule.known.values() for hold in one.holds]
-            left = await left_at(session, held)
-        before, schedule.vanished = schedule.vanished, self._vanished(snapshot, now)
-        schedule.follow(snapshot, left, now_s)
-        understood = {name: self._fleet.connections.understands(name, DETOUR) for name in snapshot.robots}
-        verdicts, said = schedule.timed([*schedule.verdicts(understood, now_s)], now_s), [True]
+        before, said = schedule.vanished, [True]
+        async with self.in_turn:  # held from the look on: what others have planned since would not be in it
+            now, now_s = self._fleet.clock.utc(), self._fleet.clock.now()
+            snapshot, left = await self._look(schedule)
+            schedule.vanished = self._vanished(snapshot, now)
+            understood = {name: self._fleet.connections.understands(name, DETOUR) for name in snapshot.robots}
+            verdicts = await asyncio.to_thread(schedule.follow_and_answer, snapshot, left, understood, now_s)
         if verdicts or before != schedule.vanished:
             async with self._fleet.database.transaction() as session:
                 await self._tell_of_vanished(session, snapshot, before, schedule.vanished, now)
@@ -108,6 +107,14 @@ class TrafficService:
         if is_news or self._seen != before_it or self._schedule is None:
             for call in self.on_poll:
                 call()
+
+    async def _look(self, schedule: TrafficSchedule) -> tuple[TrafficSnapshot, Mapping[int, str]]:
+        async with self._fleet.database.reading() as session:
+            snapshot = await read_traffic(session, self._fleet.campus)
+            if self._schedule is None:
+                snapshot = await where_they_left(session, snapshot)
+            held = [hold.grant_id for one in schedule.known.values() for hold in one.holds]
+            return snapshot, await left_at(session, held)
 
     def _new_schedule(self) -> TrafficSchedule:
         campus = self._fleet.campus

@@ -31,7 +31,7 @@ def problem_of(
 ) -> AssignmentProblem:
     """Every robot that can be planned for; those that `robots` does not name get nothing new. The goals of the traffic
     are stops of orders by their keys; any other is what the robot does for reasons of its own."""
-    tasks, journeys = traffic.tasks(now_s), traffic.journeys(now_s)
+    tasks, journeys = traffic.tasks_and_journeys(now_s)
     stops = {stop.goal.key: stop for order in orders.values() for stop in order.stops}
     at_work = {}
     for name, task in tasks.items():

@@ -18,8 +18,8 @@ left with the grant, `cleared` says that the robot stands at the end, and `cross
 In memory and pure: what it knows can be built again from the grants, the places and the goals of all robots.
 """
 
-from collections.abc import Mapping, Sequence
-from math import inf, isinf
+from collections.abc import Collection, Mapping, Sequence
+from math import inf
 from random import Random
 from typing import Final
 
@@ -62,6 +62,14 @@ class TrafficController:
     def journeys(self, now_s: float) -> dict[str, Journey]:
         """The schedule from now on."""
         return self._live.journeys(now_s)
+
+    def tasks_and_journeys(self, now_s: float) -> tuple[dict[str, Task], dict[str, Journey]]:
+        """Both of one moment, for half of the work."""
+        return self._live.tasks_and_journeys(now_s)
+
+    def can_be_planned(self) -> tuple[str, ...]:
+        """Robots that do not stand still until a person lets them go on."""
+        return tuple(name for name, one in self._robots.items() if not one.stands_still)
 
     def goals(self, robot: str) -> tuple[Goal, ...]:
         return self._robots[robot].goals
@@ -208,12 +216,12 @@ class TrafficController:
                 answers.append((name, answer))
         return answers
 
-    def goes_on_s(self, robot: str, now_s: float) -> float | None:
-        """About when one that waits is to go on, by the schedule; None where that leads nowhere. To be asked when all
-        is answered: each grant has the schedule timed anew."""
-        journey = self._live.journeys(now_s).get(robot)
-        at_s = next_move_s(self._robots[robot].start, journey)
-        return None if isinf(at_s) else at_s
+    def go_on_s(self, robots: Collection[str], now_s: float) -> dict[str, float]:
+        """About when each of those that wait is to go on, by the schedule; without those that it leads nowhere. To be
+        asked when all is answered: each grant has the schedule timed anew."""
+        journeys = self._live.journeys(now_s) if robots else {}
+        at_s = {name: next_move_s(self._robots[name].start, journeys.get(name)) for name in robots}
+        return {name: one for name, one in at_s.items() if one < inf}
 
     def next_move(self, robot: str, now_s: float) -> Move | None:
         """What it is to do where it is, or where it comes to. At the end of its corridor it goes straight on if it has

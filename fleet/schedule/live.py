@@ -37,12 +37,17 @@ class LiveSchedule:
 
     def tasks(self, now_s: float) -> dict[str, Task]:
         """Every robot that can be planned for, as it is now: of its goals those that can be reached."""
-        tasks = self._as_known(now_s)
-        return in_turn(tasks, self._retimed(tasks)) if self.network.has_crossings else tasks
+        return self.tasks_and_journeys(now_s)[0]
 
     def journeys(self, now_s: float) -> dict[str, Journey]:
         """The schedule from now on."""
         return self._retimed(self._as_known(now_s))
+
+    def tasks_and_journeys(self, now_s: float) -> tuple[dict[str, Task], dict[str, Journey]]:
+        """Both of one moment."""
+        tasks = self._as_known(now_s)
+        journeys = self._retimed(tasks)
+        return in_turn(tasks, journeys) if self.network.has_crossings else tasks, journeys
 
     def waits_for(self, robot: str, now_s: float, journey: Journey | None = None) -> tuple[str, ...]:
         """Return those that go on before this one may enter the next corridor of its journey."""
@@ -58,7 +63,7 @@ class LiveSchedule:
         if its.stands_still:
             return True
         its.goals_wait = False
-        tasks, kept = self.tasks(now_s), self.journeys(now_s)
+        tasks, kept = self.tasks_and_journeys(now_s)
         # The room that the schedule leaves it to come home stays: others might shut it in.
         del kept[robot]
         found = plan(self.network, tasks, [robot], kept) or insert(self.network, tasks, kept, robot)

@@ -54,7 +54,7 @@ def test_one_waits_until_the_other_is_out_and_is_told_for_whom_and_how_long() ->
     assert isinstance(waits, Waits)
     assert waits.robots
     waiting = "r2" if granted is first else "r1"
-    assert 100.0 <= (controller.goes_on_s(waiting, 0.0) or 0.0) <= 330.0
+    assert 100.0 <= controller.go_on_s([waiting], 0.0)[waiting] <= 330.0
     assert controller.grants(50.0) == []
 
 
