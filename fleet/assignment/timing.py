@@ -8,7 +8,7 @@ from random import Random
 from fleet.assignment.cost import SLACK_S
 from fleet.assignment.problem import AssignmentProblem, Kept, Routes
 from fleet.schedule.journey import Journey, Task
-from fleet.schedule.planning import Schedule, Tasks, first_plan, insert, plan
+from fleet.schedule.planning import Insertion, Schedule, Tasks, first_plan, plan
 from fleet.schedule.validation import problems
 
 
@@ -83,14 +83,16 @@ def _one_by_one(problem: AssignmentProblem, routes: Routes, kept: Kept) -> Timed
     if schedule is None:
         return None
     refused, promised_s = set(), _promised_s(problem, tasks, kept)
+    with_new = Insertion(problem.network, tasks, schedule.journeys)
     for name in changed(new, kept):
-        more = {**tasks, name: new[name]}
-        found = sound(problem, more, insert(problem.network, more, schedule.journeys, name))
-        if found is None or not keeps_promises(promised_s, overdue_s(problem, more, found)):
+        before = with_new.journeys[name]
+        if not with_new.put(name, new[name]):
             refused.add(name)
-        else:
-            tasks, schedule = more, found
-    return Timed(routes, tasks, schedule, frozenset(refused))
+        elif not keeps_promises(promised_s, overdue_s(problem, with_new.tasks, with_new.schedule())):
+            with_new.put_back(name, tasks[name], before)
+            refused.add(name)
+    found = sound(problem, with_new.tasks, with_new.schedule())
+    return None if found is None else Timed(routes, with_new.tasks, found, frozenset(refused))
 
 
 def sound(problem: AssignmentProblem, tasks: Tasks, schedule: Schedule | None) -> Schedule | None:

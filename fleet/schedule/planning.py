@@ -105,22 +105,51 @@ def insert(network: Network, tasks: Tasks, kept: Journeys, robot: str) -> Schedu
     Found whenever `kept` is whole and a way leads to each goal: when all others are at home nothing is in the way, so
     any order can be taken on at any time, if only late.
     """
-    task, taken = tasks[robot], _taken_on_the_way(network, tasks)
-    for other in sorted(tasks.keys() - {robot}):
-        taken.put(other, kept[other].legs)
-    work = find_work(network, taken, task.start, task.goals, task.home)
-    if work is None:
-        return None
-    taken.put(robot, work.legs)
-    journeys = {**kept, robot: Journey(work.legs, (), work.done_s)}
-    ways_home = WaysHome(network, tasks, taken, journeys, no_pause)
-    if ways_home.must_go_home(robot):
-        home = ways_home.way_home(robot)
-        if home is None:
+    others = Insertion(network, tasks, {other: kept[other] for other in sorted(tasks.keys() - {robot})})
+    return others.schedule() if others.put(robot, tasks[robot]) else None
+
+
+class Insertion:
+    """One robot after the other gets another task, and is planned anew as `insert` does it. `tasks`: of all robots;
+    `journeys`: of those that are planned."""
+
+    def __init__(self, network: Network, tasks: Tasks, journeys: Journeys) -> None:
+        self._network = network
+        self.tasks, self.journeys = dict(tasks), dict(journeys)
+        self._taken = _taken_on_the_way(network, tasks)
+        for robot, journey in journeys.items():
+            self._taken.put(robot, journey.legs)
+
+    def put(self, robot: str, task: Task) -> bool:
+        """False if no way is found: all stays as it was."""
+        self._taken.remove(robot)
+        found = self._planned(robot, task)
+        if found is None:
+            self.put_back(robot, self.tasks[robot], self.journeys.get(robot))
+            return False
+        self.tasks[robot], self.journeys[robot] = task, found
+        return True
+
+    def put_back(self, robot: str, task: Task, journey: Journey | None) -> None:
+        """This again, which it had before."""
+        self._taken.remove(robot)
+        self.tasks[robot] = task
+        if journey is not None:
+            self.journeys[robot] = journey
+            self._taken.put(robot, journey.legs)
+
+    def schedule(self) -> Schedule:
+        cost_s = sum(journey.done_s for name, journey in self.journeys.items() if self.tasks[name].goals)
+        return Schedule(dict(self.journeys), cost_s, tuple(sorted(self.tasks)))
+
+    def _planned(self, robot: str, task: Task) -> Journey | None:
+        work = find_work(self._network, self._taken, task.start, task.goals, task.home)
+        if work is None:
             return None
-        journeys[robot] = home
-    cost_s = sum(journey.done_s for name, journey in journeys.items() if tasks[name].goals)
-    return Schedule(journeys, cost_s, tuple(sorted(tasks)))
+        self._taken.put(robot, work.legs)
+        journey = Journey(work.legs, (), work.done_s)
+        ways_home = WaysHome(self._network, {robot: task}, self._taken, {robot: journey}, no_pause)
+        return ways_home.way_home(robot) if ways_home.must_go_home(robot) else journey
 
 
 def first_plan(network: Network, tasks: Tasks, rng: Random, tries: int = 20) -> Schedule | None:
