@@ -186,3 +186,8 @@ def test_the_ground_has_no_more_bays_for_passing_than_asked_and_all_homes_and_do
         assert len(here) == min(1, len(there))
     assert len(one.home_bays) == len(all_of_them.home_bays)
     assert len(one.docks()) == len(all_of_them.docks())
+
+
+def test_what_grows_with_the_fleet_is_worked_out_beside_the_event_loop() -> None:
+    seen = Run(Fleet(2, faults=OFTEN), hours=0.3, seed=4).carry_out()
+    assert {"follow_and_answer", "of", "decide", "adopt", "answers", "tasks_and_journeys"} <= seen.beside_s.keys()

@@ -8,6 +8,8 @@ import selectors
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from functools import partial
+from time import perf_counter
 from typing import Any, TypeVar
 
 Answer = TypeVar("Answer")
@@ -43,9 +45,11 @@ class _Leaps(selectors.BaseSelector):
 
 
 class SimulatedLoop(asyncio.SelectorEventLoop):
-    """Time passes only while no task has anything to do. Work for threads is done at once, at no time."""
+    """Time passes only while no task has anything to do. Work for threads is done at once, at no time; `beside_s`: how
+    long each took by the clock on the wall, by the name of what was called."""
 
     def __init__(self) -> None:
+        self.beside_s: dict[str, list[float]] = {}
         self._leaps = _Leaps()
         super().__init__(self._leaps)
 
@@ -56,11 +60,19 @@ class SimulatedLoop(asyncio.SelectorEventLoop):
         self, executor: Any, func: Callable[..., Answer], *args: Any
     ) -> "asyncio.Future[Answer]":
         future: asyncio.Future[Answer] = self.create_future()
+        begun_s = perf_counter()
         try:
             future.set_result(func(*args))
         except Exception as error:
             future.set_exception(error)
+        self.beside_s.setdefault(_name_of(func), []).append(perf_counter() - begun_s)
         return future
+
+
+def _name_of(func: Callable[..., Any]) -> str:
+    """Of what `asyncio.to_thread` was given, behind the context that it runs in."""
+    within = func.args[0] if isinstance(func, partial) and func.args else func
+    return getattr(within, "__name__", type(within).__name__)
 
 
 @dataclass(frozen=True)

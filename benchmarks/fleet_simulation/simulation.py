@@ -62,7 +62,8 @@ class Fleet:
 
 @dataclass
 class Seen:
-    """What came of a run. `astray`: letters of which the service believes what is not so."""
+    """What came of a run. `astray`: letters of which the service believes what is not so. `beside_s`: how long what was
+    done beside the event loop took, by its name, in real seconds."""
 
     hours: float
     took_s: float
@@ -74,6 +75,7 @@ class Seen:
     astray: list[str]
     driven_m: float
     stranded: int
+    beside_s: dict[str, list[float]]
 
 
 @dataclass
@@ -101,7 +103,9 @@ class Run:
     async def _live(self, folder: Path) -> Seen:
         begun_s = process_time()
         path = self.fleet.ground.write(folder)
-        campus, clock = read_map(path), LoopClock(asyncio.get_running_loop())
+        loop = asyncio.get_running_loop()
+        assert isinstance(loop, SimulatedLoop)
+        campus, clock = read_map(path), LoopClock(loop)
         planning = self.fleet.planning(self._rng("planning"), self.fleet.rounds)
         service = await Service.begin(
             *(folder / "service", str(path), clock, planning, self.fleet.pace),
@@ -129,6 +133,7 @@ class Run:
             astray=astray,
             driven_m=sum(body.driven_m for body in bodies),
             stranded=sum(body.stranded for body in bodies),
+            beside_s=loop.beside_s,
         )
 
     async def _add_robot(

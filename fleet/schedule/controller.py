@@ -111,7 +111,8 @@ class TrafficController:
         start = start_at(self._whole, place, home_number, self._is_full, now_s)
         start = let_in_after(start, [one.start for one in self._robots.values()])
         self._robots[robot] = Participant(home_number, start, before.goals if before else ())
-        self._live.plan_with(robot, now_s)
+        self._live.planned.pop(robot, None)
+        self._live.plan_some(now_s, [robot])
 
     def is_at(self, robot: str, place: Place, home: str | None) -> bool:
         """Tell if this robot is known to be there. Which place at a post it leaves or comes to is not compared but
@@ -122,7 +123,7 @@ class TrafficController:
     def leaves(self, robot: str, now_s: float) -> None:
         """A robot is taken away: what it had is free."""
         self._robots.pop(robot, None)
-        self._live.plan_all(now_s)
+        self._live.plan_some(now_s, rounds=ROUNDS)
 
     def give(self, robot: str, goals: Sequence[Goal], now_s: float, rounds: int = ROUNDS) -> bool:
         """These are its goals from now on, all of them, if there is a schedule with them; else nothing changes. Those
@@ -137,24 +138,24 @@ class TrafficController:
     def close(self, corridor: str, now_s: float) -> None:
         """Let no robot into it any more; one that is in it drives on."""
         self._live.closed |= {corridor}
-        self._live.plan_round_what_shut(now_s)
+        self._live.plan_some(now_s)
 
     def open(self, corridor: str, now_s: float) -> None:
         self._live.closed -= {corridor}
-        self._live.plan_all(now_s)
+        self._live.plan_some(now_s, rounds=ROUNDS)
 
     def freeze(self, robot: str, now_s: float) -> None:
         """It stays where it is, dead or paused: its corridor, its bay, and the crossing that it may be on stay taken.
         All others go round it; those in corridors that lead to that crossing turn round."""
         its = self._robots[robot]
         its.frozen, its.claim, its.asks_in = True, None, False
-        self._live.plan_round_what_shut(now_s)
+        self._live.plan_some(now_s)
 
     def unfreeze(self, robot: str, now_s: float) -> None:
         """It goes on from where it was."""
         self._robots[robot].frozen = False
         self._robots[robot].begins(now_s)
-        self._live.plan_all(now_s)
+        self._live.plan_some(now_s, [robot], ROUNDS)
 
     # What robots ask.
 
@@ -280,7 +281,7 @@ class TrafficController:
         was_first = its.goals[1:] == left and self._serves_now(robot) > 0
         its.wants(left, now_s)
         if not was_first:
-            self._live.plan_all(now_s)
+            self._live.plan_some(now_s, [robot], ROUNDS)
 
     def stands(self, robot: str, post: str, now_s: float) -> None:
         """It says that it is at this post. Where it was thought elsewhere, all is planned anew."""
@@ -313,7 +314,7 @@ class TrafficController:
         self._live.planned[robot] = journey
         self._lets_in(robot, lane, now_s)
         if unserved:  # it goes without them, and has to come back
-            self._live.plan_all(now_s)
+            self._live.plan_some(now_s, [robot])
         return Granted(lane, coming.at_home)
 
     def _may_leave(self, its: Participant) -> bool:

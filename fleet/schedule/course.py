@@ -18,6 +18,10 @@ Travel = Callable[[str, Lane], float]
 class OutOfOrderError(ValueError):
     """In this order a robot enters a post before another has left a bay there."""
 
+    def __init__(self, robot: str, post: str) -> None:
+        super().__init__(f"{robot} finds no bay at {post}")
+        self.robot = robot
+
 
 @dataclass(slots=True)
 class _Passage:
@@ -85,7 +89,7 @@ class Course:
         if self._goes_straight_on(before):
             enter_s = max(enter_s, self._behind_s(robot))
         if not planned.at_home:
-            enter_s = max(enter_s, self._entered_s[planned.post], self._take_bay(planned.post))
+            enter_s = max(enter_s, self._entered_s[planned.post], self._take_bay(robot, planned.post))
             self._entered_s[planned.post] = enter_s
         if self._goes_straight_on(before):
             self._leaves_corridor(robot, before._replace(arrive_s=enter_s, ready_s=enter_s))
@@ -159,12 +163,12 @@ class Course:
         self._legs[robot][-1] = leg
         self._passage_of[robot].leave_s = leg.arrive_s
 
-    def _take_bay(self, post: int) -> float:
+    def _take_bay(self, robot: str, post: int) -> float:
         """Return the time from which a bay is free: one that another robot has left before in the order of the
         schedule."""
         free = self._bays_from_s[post]
         if not free:
-            raise OutOfOrderError(f"no bay at {self._network.posts[post]}")
+            raise OutOfOrderError(robot, self._network.posts[post])
         from_s = min(free)
         free.remove(from_s)
         return from_s

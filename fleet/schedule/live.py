@@ -10,7 +10,7 @@ from fleet.schedule.execution import caught_up, in_turn, one_behind_the_other, r
 from fleet.schedule.journey import Goal, Journey, Task, standing
 from fleet.schedule.network import Network
 from fleet.schedule.participant import Participant, open_network
-from fleet.schedule.planning import Schedule, first_plan, improve, insert, plan, plan_what_can_be
+from fleet.schedule.planning import Insertion, Schedule, first_plan, improve, insert, plan, plan_what_can_be
 from fleet.schedule.turning import turn_round
 from fleet.schedule.validation import problems
 
@@ -99,26 +99,19 @@ class LiveSchedule:
         if not (self._takes(planned, self._better(planned, found, ROUNDS)) or self._takes(planned, found)):
             raise UnsoundSchedule("; ".join(problems(self.network, planned, found.journeys)))
 
-    def plan_with(self, robot: str, now_s: float) -> None:
-        """A robot is there that was not, or not there: plan it round all the others; if that fails, all."""
-        self.planned.pop(robot, None)
-        if not self._lacks_a_plan():
-            self._open(now_s)
-            tasks = self._as_known(now_s)
-            if robot in tasks and self._plan_some(tasks, [robot]):
-                return
-        self.plan_all(now_s)
-
-    def plan_round_what_shut(self, now_s: float) -> None:
-        """Something has been shut: plan those whose way it was anew, round all the others; if that fails, all."""
+    def plan_some(self, now_s: float, robots: Collection[str] = (), rounds: int = 0) -> None:
+        """These robots want something else or are elsewhere, or something was shut or opened: plan them anew, and those
+        whose way that was, round all others; if that fails, all."""
         if not self._lacks_a_plan():
             wanted = {name: _wants(task) for name, task in self._as_known(now_s).items()}
             self._open(now_s)
             tasks = self._as_known(now_s)
             concerned = [
-                name for name, task in tasks.items() if wanted[name] != _wants(task) or not self._is_open(name)
+                name
+                for name, task in tasks.items()
+                if name in robots or wanted.get(name) != _wants(task) or not self._is_open(name)
             ]
-            if self._plan_some(tasks, concerned):
+            if self._plan_round_others(tasks, concerned, rounds):
                 return
         self.plan_all(now_s)
 
@@ -152,21 +145,48 @@ class LiveSchedule:
             self.network = network
 
     def _is_open(self, name: str) -> bool:
-        """Tell if the robot is where its journey leads, and every corridor of that is open."""
+        """Tell if the robot has a journey and is where that leads, and every corridor of it is open."""
+        if name not in self.planned:
+            return False
         start, legs = self.robots[name].start, self.planned[name].legs
         lanes = [leg.lane for leg in legs[1:] if leg.lane is not None]
         return legs[0].post == start.post and all(lane in self.network.lanes[lane.start] for lane in lanes)
 
-    def _plan_some(self, tasks: Mapping[str, Task], concerned: Collection[str]) -> bool:
-        stays = {name: Journey((standing(tasks[name].start),), (), tasks[name].start.ready_s) for name in concerned}
-        still = {name: replace(task, goals=()) if name in stays else task for name, task in tasks.items()}
-        try:
-            kept = retimed(self.network, still, {name: stays.get(name) or self.planned[name] for name in tasks})
-        except OutOfOrderError:
-            return False
+    def _plan_round_others(self, tasks: Mapping[str, Task], concerned: Collection[str], rounds: int) -> bool:
+        """All of them at once, or else one by one: who finds no way may find one when another has gone."""
+        stay, kept = self._beside_those_that_stay(tasks, concerned)
         in_time = in_turn(tasks, kept)
-        found = plan(self.network, in_time, sorted(concerned), kept)
-        return found is not None and self._takes(in_time, found)
+        found = plan(self.network, in_time, stay, kept) or self._inserted(in_time, stay, kept)
+        if found is None:
+            return False
+        others = [name for name in tasks if name not in found.order]
+        found = replace(found, order=(*found.order, *others))
+        return self._takes(in_time, self._better(in_time, found, rounds))
+
+    def _beside_those_that_stay(
+        self, tasks: Mapping[str, Task], concerned: Collection[str]
+    ) -> tuple[list[str], dict[str, Journey]]:
+        """The concerned stay where they are for now, and so do those that were to come to where one of them stays now.
+        Who stays, and what all do then."""
+        stay = set(concerned)
+        while True:
+            still = {name: replace(task, goals=()) if name in stay else task for name, task in tasks.items()}
+            journeys = {name: _stays(tasks[name]) if name in stay else self.planned[name] for name in tasks}
+            try:
+                return sorted(stay), retimed(self.network, still, journeys)
+            except OutOfOrderError as error:
+                stay.add(error.robot)
+
+    def _inserted(
+        self, tasks: Mapping[str, Task], stay: Collection[str], kept: Mapping[str, Journey]
+    ) -> Schedule | None:
+        still = {name: replace(task, goals=(), home=None) if name in stay else task for name, task in tasks.items()}
+        planned, left = Insertion(self.network, still, kept), list(stay)
+        while left:
+            before, left = left, [name for name in left if not planned.put(name, tasks[name])]
+            if len(left) == len(before):
+                return None
+        return planned.schedule()
 
     def _better(self, tasks: Mapping[str, Task], found: Schedule, rounds: int) -> Schedule:
         left = iter(range(rounds))
@@ -177,6 +197,10 @@ class LiveSchedule:
             return False
         self.planned = dict(schedule.journeys)
         return True
+
+
+def _stays(task: Task) -> Journey:
+    return Journey((standing(task.start),), (), task.start.ready_s)
 
 
 def _wants(task: Task) -> tuple[Iterable[tuple[str, int]], int | None]:

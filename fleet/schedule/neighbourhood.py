@@ -14,6 +14,8 @@ from fleet.schedule.network import Network
 
 SOME_OF: Final = 4
 """So many robots at most, of many."""
+ALL_OF: Final = 12
+"""Of more robots never all are planned again: that takes as long as some tens of neighbourhoods of few."""
 LATE: Final = 0.5
 """Share of the neighbourhoods that begin with a late robot."""
 FIRST: Final = 0.7
@@ -75,7 +77,7 @@ def _posts_on_its_way(network: Network, task: Task) -> set[int]:
 def _of_all(order: Sequence[str], rng: Random) -> list[str]:
     """All with one of them elsewhere in the order, or shuffled; of many also some few."""
     chosen = list(order)
-    if len(chosen) > SOME_OF and rng.random() < 0.5:
+    if len(chosen) > ALL_OF or (len(chosen) > SOME_OF and rng.random() < 0.5):
         return rng.sample(chosen, rng.randint(2, SOME_OF))
     if rng.random() < 0.6:
         moved = chosen.pop(rng.randrange(len(chosen)))
