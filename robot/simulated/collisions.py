@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import combinations
 
+from maps.bays import MARKER_BEFORE_BAY_M
 from robot.simulated.obstacles import BUMPER_RADIUS_M
 from robot.simulated.true_poses import TruePose
 
@@ -16,8 +17,8 @@ TOUCH_MM = 2.0
 OVERLAP_MM = 5.0
 """Deeper than that is no touch any more. Bodies of two processes may each go on for a step of 1 mm at first contact."""
 APART_MM = 10.0
-PUT_DOWN_M = 0.1
-"""A robot is where a person put it until it has gone this far from there."""
+PUT_DOWN_M = MARKER_BEFORE_BAY_M + 0.05
+"""A robot is where a person put it until it has gone this far from there: it goes on to the marker of its bay."""
 
 
 @dataclass

@@ -63,6 +63,15 @@ def test_what_a_person_put_there_is_the_persons_until_it_has_left() -> None:
     assert len(judge.overlaps) == 1, "that one is its own"
 
 
+def test_one_that_was_put_into_a_bay_and_goes_on_to_its_marker_is_still_where_a_person_put_it() -> None:
+    judge = CollisionJudge()
+    look(judge, 0.0, 900.0)
+    look(judge, 1.0, 400.0, (0, 1))
+    look(judge, 2.0, 290.0, (0, 1))
+    judge.look({"r1": TruePose(3.0, 0.29, 0.0, 0.0, 0), "r2": TruePose(3.0, BODY_M + 0.29, 0.0, 0.0, 1)})
+    assert [one.by_hand for one in judge.found] == [True]
+
+
 def test_robots_that_stand_in_each_other_when_the_world_begins_were_put_there() -> None:
     judge = CollisionJudge()
     look(judge, 0.0, -100.0)
