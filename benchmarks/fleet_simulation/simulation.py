@@ -31,6 +31,7 @@ from benchmarks.fleet_simulation.packs import some_pack
 from benchmarks.fleet_simulation.people import People
 from benchmarks.fleet_simulation.robot import Mind
 from benchmarks.fleet_simulation.service import MEMORY, SHIPPED, Pace, PlansInRounds, Service
+from fleet.schedule.controller import TrafficController
 from maps import CampusMap, read_map
 from protocol.ids import ids_from
 from robot.mission.store import Store
@@ -63,7 +64,8 @@ class Fleet:
 @dataclass
 class Seen:
     """What came of a run. `astray`: letters of which the service believes what is not so. `beside_s`: how long what was
-    done beside the event loop took, by its name, in real seconds."""
+    done beside the event loop took, by its name, in real seconds. `traffic`: as it was at the end; None where the service
+    was just making it anew."""
 
     hours: float
     took_s: float
@@ -76,6 +78,7 @@ class Seen:
     driven_m: float
     stranded: int
     beside_s: dict[str, list[float]]
+    traffic: TrafficController | None
 
 
 @dataclass
@@ -118,6 +121,7 @@ class Run:
             await self._add_robot(f"r{number}", home, (campus, clock, judge, taking), service, people, befallen)
         await self._go_through(campus, service, people)
         states, astray = await people.states(), await people.astray(self._still_to_tell())
+        schedule = service.parts.traffic_service.schedule
         await self._end(service)
         judge.ends()
         estimates = EstimateQuality.of(service.parts.estimates)
@@ -134,6 +138,7 @@ class Run:
             driven_m=sum(body.driven_m for body in bodies),
             stranded=sum(body.stranded for body in bodies),
             beside_s=loop.beside_s,
+            traffic=schedule.controller if schedule is not None else None,
         )
 
     async def _add_robot(

@@ -16,6 +16,8 @@ from fleet.schedule.validation import problems
 
 ROUNDS: Final = 10
 """So often something better is looked for after each change, unless the caller does that himself."""
+TRIES: Final = 3
+"""So many orders are tried of those that a change concerns, before all are planned again."""
 
 
 class UnsoundSchedule(RuntimeError):
@@ -144,49 +146,55 @@ class LiveSchedule:
         if network != self.network:  # what is known of one that is the same stays known: all its ways, above all
             self.network = network
 
+    def _leads_on(self, name: str) -> bool:
+        """Tell if the robot has a journey, and is where that leads."""
+        return name in self.planned and self.robots[name].start.post == self.planned[name].legs[0].post
+
     def _is_open(self, name: str) -> bool:
-        """Tell if the robot has a journey and is where that leads, and every corridor of it is open."""
-        if name not in self.planned:
+        """Tell if it has one that leads on, and every corridor of that is open."""
+        if not self._leads_on(name):
             return False
-        start, legs = self.robots[name].start, self.planned[name].legs
-        lanes = [leg.lane for leg in legs[1:] if leg.lane is not None]
-        return legs[0].post == start.post and all(lane in self.network.lanes[lane.start] for lane in lanes)
+        lanes = [leg.lane for leg in self.planned[name].legs[1:] if leg.lane is not None]
+        return all(lane in self.network.lanes[lane.start] for lane in lanes)
 
     def _plan_round_others(self, tasks: Mapping[str, Task], concerned: Collection[str], rounds: int) -> bool:
-        """All of them at once, or else one by one: who finds no way may find one when another has gone."""
-        stay, kept = self._beside_those_that_stay(tasks, concerned)
+        """All of them at once, or else one by one: who finds no way goes before the others then."""
+        again, kept = self._timed_before(tasks, concerned)
         in_time = in_turn(tasks, kept)
-        found = plan(self.network, in_time, stay, kept) or self._inserted(in_time, stay, kept)
+        found = plan(self.network, in_time, again, kept) or self._one_by_one(in_time, again, kept)
         if found is None:
             return False
-        others = [name for name in tasks if name not in found.order]
-        found = replace(found, order=(*found.order, *others))
+        others = [name for name in tasks if name not in again]
+        found = replace(found, order=(*again, *others))
         return self._takes(in_time, self._better(in_time, found, rounds))
 
-    def _beside_those_that_stay(
+    def _timed_before(
         self, tasks: Mapping[str, Task], concerned: Collection[str]
     ) -> tuple[list[str], dict[str, Journey]]:
-        """The concerned stay where they are for now, and so do those that were to come to where one of them stays now.
-        Who stays, and what all do then."""
-        stay = set(concerned)
+        """Return who is to be planned again, and the journeys of all as they were, timed. Who has none stays where it
+        is in that time, and so does who was to come there: it is planned again, too."""
+        stay = {name for name in concerned if not self._leads_on(name)}
         while True:
-            still = {name: replace(task, goals=()) if name in stay else task for name, task in tasks.items()}
+            again = stay.union(concerned)
+            still = {name: replace(task, goals=()) if name in again else task for name, task in tasks.items()}
             journeys = {name: _stays(tasks[name]) if name in stay else self.planned[name] for name in tasks}
             try:
-                return sorted(stay), retimed(self.network, still, journeys)
+                return sorted(again), retimed(self.network, still, journeys)
             except OutOfOrderError as error:
                 stay.add(error.robot)
 
-    def _inserted(
-        self, tasks: Mapping[str, Task], stay: Collection[str], kept: Mapping[str, Journey]
+    def _one_by_one(
+        self, tasks: Mapping[str, Task], again: Sequence[str], kept: Mapping[str, Journey]
     ) -> Schedule | None:
-        still = {name: replace(task, goals=(), home=None) if name in stay else task for name, task in tasks.items()}
-        planned, left = Insertion(self.network, still, kept), list(stay)
-        while left:
-            before, left = left, [name for name in left if not planned.put(name, tasks[name])]
-            if len(left) == len(before):
-                return None
-        return planned.schedule()
+        order, others = [*again], {name: journey for name, journey in kept.items() if name not in again}
+        for _ in range(TRIES):
+            planned = Insertion(self.network, tasks, others)
+            lost = next((name for name in order if not planned.put(name, tasks[name])), None)
+            if lost is None:
+                return planned.schedule()
+            order.remove(lost)
+            order.insert(0, lost)
+        return None
 
     def _better(self, tasks: Mapping[str, Task], found: Schedule, rounds: int) -> Schedule:
         left = iter(range(rounds))

@@ -117,8 +117,8 @@ class Insertion:
         self._network = network
         self.tasks, self.journeys = dict(tasks), dict(journeys)
         self._taken = _taken_on_the_way(network, tasks)
-        for robot, journey in journeys.items():
-            self._taken.put(robot, journey.legs)
+        for robot in tasks:
+            self._take(robot)
 
     def put(self, robot: str, task: Task) -> bool:
         """False if no way is found: all stays as it was."""
@@ -136,11 +136,18 @@ class Insertion:
         self.tasks[robot] = task
         if journey is not None:
             self.journeys[robot] = journey
-            self._taken.put(robot, journey.legs)
+        self._take(robot)
 
     def schedule(self) -> Schedule:
         cost_s = sum(journey.done_s for name, journey in self.journeys.items() if self.tasks[name].goals)
         return Schedule(dict(self.journeys), cost_s, tuple(sorted(self.tasks)))
+
+    def _take(self, robot: str) -> None:
+        """Its journey; of one that has none what it has now, for as long as it needs to begin one."""
+        if robot in self.journeys:
+            self._taken.put(robot, self.journeys[robot].legs)
+        else:
+            self._taken.hold(robot, self.tasks[robot].start, self.tasks[robot].start.ready_s)
 
     def _planned(self, robot: str, task: Task) -> Journey | None:
         work = find_work(self._network, self._taken, task.start, task.goals, task.home)
