@@ -19,7 +19,7 @@ from benchmarks.fleet_simulation.faults import NONE
 from benchmarks.fleet_simulation.honeycomb import Honeycomb
 from benchmarks.fleet_simulation.process import simulates_only
 from benchmarks.fleet_simulation.service import CALM, PlansInRounds
-from benchmarks.fleet_simulation.simulation import NEVER_EMPTY, Fleet, Run, Seen
+from benchmarks.fleet_simulation.simulation import NEVER_EMPTY, SETTLES_S, Fleet, Run, Seen
 from fleet.assignment.deciding import Decision, decide
 from fleet.assignment.improving import improved, within
 from fleet.assignment.problem import AssignmentProblem
@@ -105,7 +105,7 @@ def _first_answers(size: Size, capacity: int, seed: int) -> dict[str, Any]:
         "first_processor_ms": _spread(watched.processor_s[size.robots :]),
         "problem_ms": _spread(seen.beside_s["of"]),
         "traffic_ms": _spread(seen.beside_s["follow_and_answer"]),
-        "closure_ms": _spread(_closures_s(seen.traffic, size.hours * 3600.0)),
+        "closure_ms": _spread(_closures_s(seen.traffic, size.hours * 3600.0 + 2 * SETTLES_S)),
     }
     say(f"  {size.robots} robots with {capacity} items each, {size.orders} orders waiting: {figures}")
     return figures

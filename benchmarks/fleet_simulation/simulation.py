@@ -64,8 +64,8 @@ class Fleet:
 @dataclass
 class Seen:
     """What came of a run. `astray`: letters of which the service believes what is not so. `beside_s`: how long what was
-    done beside the event loop took, by its name, in real seconds. `traffic`: as it was at the end; None where the service
-    was just making it anew."""
+    done beside the event loop took, by its name, in real seconds. `traffic`: as it was at the end; None where the
+    service was just making it anew."""
 
     hours: float
     took_s: float
