@@ -352,3 +352,21 @@ def test_a_corridor_is_closed_before_any_robot_is_there() -> None:
     controller.close("a-b", 0.0)
     controller.joins("r1", post="a", home="a", at_home=True, now_s=1.0)
     assert controller.claims("r1", "a", "b", 2.0) == Denied(line(3).lane(0, 1), None)
+
+
+@pytest.mark.parametrize("first", ["r0", "r1"])
+def test_what_a_closure_does_not_concern_goes_its_way_as_before(first: str) -> None:
+    """Two change places at one end of a line, and two are at the other end."""
+    network = line(6)
+    controller = TrafficController(network)
+    goals = {"r0": 1, "r1": 0, "r2": 5, "r3": 4}
+    for name, post in zip(goals, "abef", strict=True):
+        controller.joins(name, post=post, home=post, at_home=True, now_s=0.0)
+    for name in sorted(goals, key=lambda name: name != first):
+        assert controller.give(name, [Goal(goals[name], 10.0, key=name)], 0.0, rounds=0)
+    before = controller.journeys(1.0)
+    controller.close("e-f", 1.0)
+    after = controller.journeys(1.0)
+    assert (after["r0"], after["r1"]) == (before["r0"], before["r1"])
+    assert min(("r0", "r1"), key=lambda name: after[name].done_s) == first
+    assert (len(after["r2"].legs), len(after["r3"].legs)) == (1, 1)

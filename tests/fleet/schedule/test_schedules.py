@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from fleet.schedule.execution import retimed
 from fleet.schedule.journey import Goal, Start, Task
 from fleet.schedule.network import Lane, Network
-from fleet.schedule.planning import Schedule, first_plan, improve, insert, plan
+from fleet.schedule.planning import Insertion, Schedule, first_plan, improve, insert, plan
 from fleet.schedule.validation import problems
 from tests.fleet.schedule.carried_out import World
 
@@ -95,6 +95,30 @@ def test_one_more_goal_can_always_be_taken_on_however_late_everybody_is(rng: Ran
     found = insert(network, more, kept, robot)
     assert found is not None
     assert problems(network, more, found.journeys) == []
+
+
+@given(st.randoms(use_true_random=False), st.integers(2, 6))
+def test_robots_get_more_to_do_one_by_one_and_who_is_put_back_does_what_it_did(rng: Random, robots: int) -> None:
+    network = random_network(rng, crossing=True)
+    tasks = random_tasks(rng, network, robots)
+    before = planned(rng, network, tasks)
+    posts, more = range(len(network.posts)), Insertion(network, tasks, before.journeys)
+    for robot in sorted(tasks):
+        assert more.put(robot, replace(tasks[robot], goals=(*tasks[robot].goals, Goal(rng.choice(posts), 20.0))))
+        if rng.random() < 0.5:
+            more.put_back(robot, tasks[robot], before.journeys[robot])
+    assert problems(network, more.tasks, more.schedule().journeys) == []
+
+
+def test_one_that_finds_no_way_to_more_stays_in_the_way_of_others_as_it_was() -> None:
+    network, here, there = two_posts(1), Start(0, True, 0.0, 0.0), Start(1, True, 0.0, 0.0)
+    tasks = {"r1": Task(here, (Goal(1, 30.0),), 0), "r2": Task(there, (), 1)}
+    found = first_plan(network, tasks, Random(0))
+    assert found is not None
+    more = Insertion(replace(network, lanes=((), ())), tasks, found.journeys)
+    assert not more.put("r2", Task(there, (Goal(0, 30.0),), 1))
+    assert (more.tasks, more.journeys) == (tasks, found.journeys)
+    assert more.schedule().cost_s == found.cost_s
 
 
 def two_posts(bays: int, following_s: float | None = None) -> Network:
