@@ -19,6 +19,7 @@ In memory and pure: what it knows can be built again from the grants, the places
 """
 
 from collections.abc import Collection, Mapping, Sequence
+from functools import partial
 from math import inf
 from random import Random
 from typing import Final
@@ -108,7 +109,8 @@ class TrafficController:
         before = self._robots.pop(robot, None)
         home_number = None if home is None else self._whole.number_of(home)
         place = Place(post, at_home, tuple(towards), on_crossing, to_home, is_let_in)
-        start = start_at(self._whole, place, home_number, self._is_full, now_s)
+        full = partial(is_full, self._whole, robots=self._robots.values())
+        start = start_at(self._whole, place, home_number, full, now_s)
         start = let_in_after(start, [one.start for one in self._robots.values()])
         self._robots[robot] = Participant(home_number, start, before.goals if before else ())
         self._live.planned.pop(robot, None)
@@ -131,8 +133,7 @@ class TrafficController:
         return self._live.give(robot, goals, now_s, rounds)
 
     def adopt(self, goals: Mapping[str, Sequence[Goal]], schedule: Schedule, now_s: float) -> bool:
-        """The same for several robots with a schedule that was worked out elsewhere, if it can still be carried out:
-        since then robots may have entered corridors, but no others than it says."""
+        """The same for several robots with a schedule worked out elsewhere, if none has gone otherwise since then."""
         return self._live.adopt(goals, schedule, now_s)
 
     def close(self, corridor: str, now_s: float) -> None:
@@ -197,8 +198,7 @@ class TrafficController:
         return self._lets_come_in(robot, number, now_s)
 
     def gives_up_claim(self, robot: str) -> None:
-        self._robots[robot].claim = None
-        self._robots[robot].asks_in = False
+        self._robots[robot].claim, self._robots[robot].asks_in = None, False
 
     def grants(self, now_s: float) -> list[tuple[str, Granted | LetIn | Denied]]:
         """Those who waited and may go on now, or are led another way now. Asked after every change, and when a time
@@ -218,11 +218,11 @@ class TrafficController:
         return answers
 
     def go_on_s(self, robots: Collection[str], now_s: float) -> dict[str, float]:
-        """About when each of those that wait is to go on, by the schedule; without those that it leads nowhere. To be
-        asked when all is answered: each grant has the schedule timed anew."""
+        """About when each of those that wait is to go on; without those that the schedule leads nowhere. To be asked
+        when all is answered: each grant has it timed anew."""
         journeys = self._live.journeys(now_s) if robots else {}
-        at_s = {name: next_move_s(self._robots[name].start, journeys.get(name)) for name in robots}
-        return {name: one for name, one in at_s.items() if one < inf}
+        at_s = ((name, next_move_s(self._robots[name].start, journeys.get(name))) for name in robots)
+        return {name: one for name, one in at_s if one < inf}
 
     def next_move(self, robot: str, now_s: float) -> Move | None:
         """What it is to do where it is, or where it comes to. At the end of its corridor it goes straight on if it has
@@ -385,9 +385,6 @@ class TrafficController:
         if its.start.rests and its.goals and (its.goals[0].key, its.goals[0].post) == (CLAIMED, its.start.post):
             its.goals = its.goals[1:]
         self._live.try_again(now_s)
-
-    def _is_full(self, post: int) -> bool:
-        return is_full(self._whole, post, self._robots.values())
 
     def _serves_now(self, robot: str) -> int:
         """Count its goals that are to be served where it is: not those that no way leads to now."""

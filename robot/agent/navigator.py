@@ -21,8 +21,8 @@ from robot.localization.directions import PLAIN_TURNS, Way, kept_from, next_post
 from robot.localization.docks import nearest_dock, way_out
 from robot.localization.expected import SHARE, wrong_corridor
 from robot.localization.place import AtPost, Between, Coming, Facing, Leaving, Unknown
-from robot.localization.remembering import Moment
-from robot.localization.steps import corridor_between, gone_astray, marked, turned_round
+from robot.localization.remembering import Moment, may_look_back_mm
+from robot.localization.steps import corridor_between, gone_astray, marked, may_be_past_marker, turned_round
 from robot.mission.mission import MissionManager
 from robot.skills.interfaces import View
 
@@ -30,9 +30,6 @@ RESTS_MM = 25.0
 """A pulse or two of the paper's `drive`. Its program does not look at the line as long as it perceives a post."""
 STRAIGHT_RAD = math.radians(12)
 """Within this the line is under the diodes, and following it straightens the robot up."""
-LOOKS_BACK_MM = 600.0
-"""So far back a marker that it has rolled past comes into sight again: it is seen from 500 to 100 mm before its post,
-and a base at 200 mm/s rolls on for half a second."""
 SURELY_PAST_M = 0.3
 ASKS_BEFORE_MM = 2000.0
 """Some ten seconds before it is at the waiting point."""
@@ -89,9 +86,9 @@ class Navigator(Tracker):
 
     @property
     def doubted(self) -> str | None:
-        """The post just before which it was switched off, while it cannot tell whether it has passed it; where it was
-        switched off in a turn, until its base is heard; and the crossing where it looks anywhere, if it has a service:
-        each line may be another robot's there."""
+        """The post just before which it was switched off, or turned back to it, while it may have passed it or its
+        marker; where it was switched off in a turn, until its base is heard; and the crossing where it looks anywhere,
+        if it has a service: each line may be another robot's there."""
         place = self._place
         looks_anywhere = self.crossing and self._facing is None and not self._duties.claims.alone
         if self.at and (self._turn or looks_anywhere):
@@ -117,9 +114,8 @@ class Navigator(Tracker):
 
     @property
     def look_back_mm(self) -> float:
-        """Return how far it may go back in search of a marker: half of the corridor that it holds at most."""
-        length_mm = 1000 * self._place.corridor.length_m if isinstance(self._place, Between) else LOOKS_BACK_MM
-        return min(LOOKS_BACK_MM, length_mm / 2)
+        """Return how far it may go back in search of a marker."""
+        return may_look_back_mm(self._place)
 
     def reached_after(self, arrivals: int) -> list[str]:
         """The posts reached after so many others; of very many the newest."""
@@ -341,6 +337,8 @@ class Navigator(Tracker):
         if isinstance(place, Between):
             self._place = turned_round(self._after_a_miss(place), self._odometry.ahead_mm)
             self._head_for(self._place.towards)
+            if may_be_past_marker(self._place, self._odometry.ahead_mm):
+                self._note_moment(Moment.BLIND)
             return
         ahead = self._post_ahead()
         corridor = corridor_between(self.campus, place.here, ahead.name) if ahead and place.here else None

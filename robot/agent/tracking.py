@@ -278,7 +278,8 @@ class Tracker:
         place = self._place
         if not isinstance(place, Between) or self._moment is Moment.NEARING:
             return
-        if place.by_marker or (place.ahead_mm is not None and place.ahead_mm - self._odometry.ahead_mm < UNREAD_MM):
+        is_near = place.ahead_mm is not None and place.ahead_mm - self._odometry.ahead_mm < UNREAD_MM
+        if place.by_marker or (is_near and self._moment is not Moment.BLIND):
             self._note_moment(Moment.NEARING)
 
     def _note_moment(self, moment: Moment, turn: TurnBegun | None = None) -> None:

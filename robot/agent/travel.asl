@@ -94,14 +94,16 @@
 +!leave_crossing.
 
 // Switched off just before a post, it may have passed it, and stand in a corridor that it was not granted. It goes back a
-// little for the marker. Without one it stands until a person puts it down where it can read one, or in a dock.
+// little for the marker. Switched off on its way and turned back before it read any marker, it may be nearer to the post
+// than that is, and only looks. Without a marker it stands until a person puts it down where it can read one, or in a dock.
 +!look_back <- look_back.
 -!look_back
-  <- raise_fault(place_unknown, "it was switched off just before a post and cannot tell whether it has passed it");
+  <- raise_fault(place_unknown, "it was switched off on its way and cannot tell how far it is to the next post");
      .wait(not doubted(_)).
 
 // The watchdog of the way: follow_line itself gives up when no post comes where one should.
 +!follow <- !follow(1).
++!follow(_) : doubted(_) <- !look_back; !follow.
 +!follow(_) <- follow_line; clear_fault(stuck).
 -!follow(_) : docked.   // it was put off docking at the last moment, and is in the dock: a post like any other
 -!follow(_)[reason(must_wait)] <- !cross; !follow.
@@ -128,7 +130,10 @@ closes_the_way(post_missed).
 +!go_back(Why)
   <- mark_blocked(Why);
      turn(behind);
+     !be_sure;
      follow_line.
++!be_sure : doubted(_) <- !look_back.
++!be_sure.
 // Shut in: on in whichever way the robot looks now, when that has become possible.
 -!go_back(_)[error_msg(Why)] <- !wait_for_help(Why); !follow.
 

@@ -8,6 +8,10 @@ from robot.drivers.interfaces import Odometry
 from robot.localization.place import AtPost, Between, Facing, Leaving, Place, Unknown
 from robot.localization.steps import corridor_between
 
+LOOKS_BACK_MM = 600.0
+"""So far back a marker that it has rolled past comes into sight again: it is seen from 500 to 100 mm before its post,
+and a base at 200 mm/s rolls on for half a second."""
+
 
 class Moment(StrEnum):
     """The action under way, if a power cut then leaves doubt of its place; written down before it begins."""
@@ -20,6 +24,8 @@ class Moment(StrEnum):
     """On one of the lines of its post; which one is not known."""
     NEARING = "nearing"
     """Before the post ahead: its base may have rolled on, beyond the post and what it was granted."""
+    BLIND = "blind"
+    """It turned back so near to the post behind that its marker may have been passed on the way in."""
     LIFTED = "lifted"
     """In a person's hands, until a marker or a dock has told where it is."""
 
@@ -38,15 +44,25 @@ def remembered(campus: CampusMap, position: parts.Position, moment: Moment | Non
     if moment in (Moment.TURNING, Moment.DOCKING):
         return AtPost(post, 0.0, 0.0, came_by), None
     if towards:
-        return _on_its_way(campus, post, towards, doubted=moment is Moment.NEARING)
+        return _on_its_way(campus, post, towards, moment)
     facing_rad = came_by.heading_arriving(post) if came_by else None
     return AtPost(post, 0.0, 0.0, came_by), Facing.of(facing_rad, Odometry())
 
 
-def _on_its_way(campus: CampusMap, post: str, towards: str, doubted: bool) -> tuple[Place, Facing | None]:
+def _on_its_way(campus: CampusMap, post: str, towards: str, moment: Moment | None) -> tuple[Place, Facing | None]:
     """`towards` may be the same post: it had turned round."""
-    corridor = corridor_between(campus, post, towards)
+    corridor, blind = corridor_between(campus, post, towards), moment is Moment.BLIND
+    doubted = blind or moment is Moment.NEARING
     if corridor is None:
-        return Leaving(post, doubted=doubted), None
+        return Leaving(post, doubted=doubted, blind=blind), None
     facing_rad = corridor.heading_leaving(post)
-    return Between(corridor, post, towards, doubted=doubted), Facing.of(facing_rad, Odometry())
+    return Between(corridor, post, towards, doubted=doubted, blind=blind), Facing.of(facing_rad, Odometry())
+
+
+def may_look_back_mm(place: Place) -> float:
+    """How far it may go back in search of a marker: half of the corridor that it holds at most, and not at all towards
+    what it has just turned back from."""
+    if isinstance(place, Between | Leaving) and place.blind:
+        return 0.0
+    length_mm = 1000 * place.corridor.length_m if isinstance(place, Between) else LOOKS_BACK_MM
+    return min(LOOKS_BACK_MM, length_mm / 2)

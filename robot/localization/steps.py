@@ -3,12 +3,15 @@
 from dataclasses import replace
 
 from maps import CampusMap, Corridor
+from maps.bays import MARKER_BEFORE_CROSSING_M
 from robot.localization.place import AtPost, Between, Coming, Leaving, Place, Unknown
 
 REACHED_MM = 30.0
 """So near counts as at the post; a robot that stops there is within a few millimetres."""
 LEFT_MM = 100.0
 """So far beyond it the robot has left the post."""
+SURELY_SEEN_MM = 1000 * MARKER_BEFORE_CROSSING_M + 500.0
+"""From so far before its post a marker comes into sight."""
 
 
 def corridor_between(campus: CampusMap, post: str, other: str) -> Corridor | None:
@@ -32,7 +35,7 @@ def marked(campus: CampusMap, place: Place, post: str, at_mm: float, here_mm: fl
             return _marked_at_post(place, post, at_mm, here_mm)
         case Between():
             if post == place.towards:
-                return replace(place, ahead_mm=at_mm, by_marker=True, doubted=False)
+                return replace(place, ahead_mm=at_mm, by_marker=True, doubted=False, blind=False)
             if post == place.behind:
                 return Between(place.corridor, place.here, post, None, at_mm, by_marker=True)
             corridor = corridor_between(campus, place.here, post) if post == place.meant else None
@@ -82,13 +85,24 @@ def searched(place: AtPost, here_mm: float) -> AtPost:
 
 
 def turned_round(place: Between, here_mm: float) -> Between:
-    """Turn the place round: what lay behind lies ahead, as far as it was behind."""
+    """Turn the place round: what lay behind lies ahead, as far as it was behind. One that was switched on on its way
+    counts from there: as long as it has not driven farther than a marker is seen before its post, the post behind may
+    be nearer than its marker."""
     begin_mm = ahead_mm = None
     if place.begin_mm is not None:
         ahead_mm = 2 * here_mm - place.begin_mm
+    elif place.by_marker and place.ahead_mm is not None:
+        ahead_mm = 2 * here_mm - place.ahead_mm + 1000 * place.corridor.length_m
     if place.ahead_mm is not None:
         begin_mm = 2 * here_mm - place.ahead_mm
-    return Between(place.corridor, place.here, place.behind, begin_mm, ahead_mm)
+    blind = ahead_mm is None and here_mm < SURELY_SEEN_MM
+    return Between(place.corridor, place.here, place.behind, begin_mm, ahead_mm, doubted=blind, blind=blind)
+
+
+def may_be_past_marker(place: Between, here_mm: float) -> bool:
+    """Tell of one that has turned round whether it is nearer to the post ahead than a marker is seen from."""
+    left_mm = None if place.ahead_mm is None or place.by_marker else place.ahead_mm - here_mm
+    return place.blind or (left_mm is not None and left_mm < SURELY_SEEN_MM)
 
 
 def gone_astray(place: Between, corridor: Corridor, counted_m: float) -> Between:

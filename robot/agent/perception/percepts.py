@@ -151,8 +151,9 @@ PERCEPTS: Final = (
     ),
     Percept(
         "doubted",
-        "doubted(Post): it was switched off just before this post and may have passed it, or on its crossing and may "
-        "look anywhere; until a marker, a dock, its base or a person who lifts it tells",
+        "doubted(Post): it was switched off just before this post and may have passed it, or it turned back near to it "
+        "and may have passed its marker, or on its crossing and may look anywhere; until a marker, a dock, its base or "
+        "a person who lifts it tells",
         lambda s: [f"doubted({s.where.doubted})"] if s.where.doubted else [],
     ),
     Percept(
