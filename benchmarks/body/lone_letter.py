@@ -93,7 +93,9 @@ class LetterRun:
         self.random, self._world, self._seed = Random(f"{world}/{seed}/letter"), world, seed
         self._motion, self._slip, self._drains_to = motion or Motion(), slip, drains_to
         self._folder, self.clock, self.campus = folder, SteppedClock(), campus_of(WORLDS[world])
-        self._track, self._home = self.campus.track, self.random.choice(self.campus.docks()).name
+        self._track = self.campus.track
+        homes = [self._track.address_of(home.name) for home in self._track.home_bays if home.dock]
+        self._home = self.random.choice(homes or [dock.name for dock in self.campus.docks()])
         self._codes = {purpose: f"CM1:{self.random.randbytes(16).hex()}" for purpose in STOPS}
         self.told: list[Part] = []
         self.problems: list[str] = []
