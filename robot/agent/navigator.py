@@ -22,7 +22,7 @@ from robot.localization.docks import nearest_dock, way_out
 from robot.localization.expected import SHARE, wrong_corridor
 from robot.localization.place import AtPost, Between, Coming, Facing, Leaving, Unknown
 from robot.localization.remembering import Moment, may_look_back_mm
-from robot.localization.steps import corridor_between, gone_astray, marked, may_be_past_marker, turned_round
+from robot.localization.steps import corridor_between, gone_astray, marked, turned_round
 from robot.mission.mission import MissionManager
 from robot.skills.interfaces import View
 
@@ -93,9 +93,13 @@ class Navigator(Tracker):
         looks_anywhere = self.crossing and self._facing is None and not self._duties.claims.alone
         if self.at and (self._turn or looks_anywhere):
             return self.at
-        if isinstance(place, Between | Leaving) and place.doubted:
-            return place.towards or place.here
-        return None
+        in_doubt = isinstance(place, Between | Leaving) and place.doubted
+        return (place.towards or place.here) if in_doubt else None
+
+    @property
+    def goes_by_length(self) -> bool:
+        """Return whether no marker may come before the post ahead: it is where the map says."""
+        return self.towards in self.unread or (isinstance(self._place, Between) and self._place.blind)
 
     @property
     def looks_anywhere(self) -> bool:
@@ -123,10 +127,8 @@ class Navigator(Tracker):
         return self.visited[-new:] if new else []
 
     def way(self) -> Way | None:
-        """The way from here to the destination; None between posts, and where no way leads.
-
-        As long as the way it looks is not known the word is `forward`: the next post will tell.
-        """
+        """The way from here to the destination; None between posts, and where no way leads. As long as the way it looks
+        is not known the word is `forward`: the next post will tell."""
         if self.destination is None or self.at is None:
             return None
         if self.at in places_to_stand(self.campus, self.destination):
@@ -162,9 +164,8 @@ class Navigator(Tracker):
     def goes_deeper(self) -> Leg | None:
         """The corridor into which it goes on, having come in since it was switched on; None: it goes back, or may."""
         place = self._place
-        if not isinstance(place, Between) or place.turned_round or place.begin_mm is None:
-            return None
-        return self.corridor
+        goes_back = not isinstance(place, Between) or place.turned_round or place.begin_mm is None
+        return None if goes_back else self.corridor
 
     @property
     def came_from(self) -> str | None:
@@ -337,7 +338,7 @@ class Navigator(Tracker):
         if isinstance(place, Between):
             self._place = turned_round(self._after_a_miss(place), self._odometry.ahead_mm)
             self._head_for(self._place.towards)
-            if may_be_past_marker(self._place, self._odometry.ahead_mm):
+            if self._place.blind:
                 self._note_moment(Moment.BLIND)
             return
         ahead = self._post_ahead()

@@ -58,7 +58,7 @@ class Leaving:
     here: str
     begin_mm: float | None = None
     doubted: bool = False
-    """It was switched off just before that post, on its way back, and may have passed it; or it is `blind`."""
+    """It was switched off just before that post, on its way back, and may have passed it."""
     blind: bool = False
     """As in `Between`."""
 
@@ -94,10 +94,11 @@ class Between:
     meant: str | None = None
     """The post that it was going to when it came in here by mistake; None: it is where it was granted."""
     doubted: bool = False
-    """It was switched off just before the end ahead, and may have passed it; or it is `blind`."""
+    """It was switched off just before the end ahead, and may have passed it; or it is `blind` and cannot tell how far
+    that is."""
     blind: bool = False
-    """It has turned round, and cannot tell how far the end ahead is: its marker may lie behind the robot, beside what
-    it turned back from."""
+    """It has turned round so near to the end ahead that the marker of that may lie behind it, beside what it turned
+    back from."""
 
     def __post_init__(self) -> None:
         if not {self.here, self.towards} <= {self.corridor.a, self.corridor.b}:

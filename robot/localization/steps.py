@@ -86,8 +86,7 @@ def searched(place: AtPost, here_mm: float) -> AtPost:
 
 def turned_round(place: Between, here_mm: float) -> Between:
     """Turn the place round: what lay behind lies ahead, as far as it was behind. One that was switched on on its way
-    counts from there: as long as it has not driven farther than a marker is seen before its post, the post behind may
-    be nearer than its marker."""
+    counts from there: it is at least as far."""
     begin_mm = ahead_mm = None
     if place.begin_mm is not None:
         ahead_mm = 2 * here_mm - place.begin_mm
@@ -95,14 +94,9 @@ def turned_round(place: Between, here_mm: float) -> Between:
         ahead_mm = 2 * here_mm - place.ahead_mm + 1000 * place.corridor.length_m
     if place.ahead_mm is not None:
         begin_mm = 2 * here_mm - place.ahead_mm
-    blind = ahead_mm is None and here_mm < SURELY_SEEN_MM
-    return Between(place.corridor, place.here, place.behind, begin_mm, ahead_mm, doubted=blind, blind=blind)
-
-
-def may_be_past_marker(place: Between, here_mm: float) -> bool:
-    """Tell of one that has turned round whether it is nearer to the post ahead than a marker is seen from."""
-    left_mm = None if place.ahead_mm is None or place.by_marker else place.ahead_mm - here_mm
-    return place.blind or (left_mm is not None and left_mm < SURELY_SEEN_MM)
+    blind = (here_mm if ahead_mm is None else ahead_mm - here_mm) < SURELY_SEEN_MM
+    doubted = blind and ahead_mm is None
+    return Between(place.corridor, place.here, place.behind, begin_mm, ahead_mm, doubted=doubted, blind=blind)
 
 
 def gone_astray(place: Between, corridor: Corridor, counted_m: float) -> Between:

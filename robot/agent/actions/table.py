@@ -82,7 +82,6 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
         navigator.leave()
         limit_s = FOLLOW_LEAST_S + FOLLOW_TIMES * navigator.ahead_m * 1000 / hands.cruise_mm_s
         left_mm = navigator.way_left_mm
-        ahead = navigator.towards
         return FollowLine(
             navigator.campus,
             navigator.came_from,
@@ -90,8 +89,8 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
             hands.shape,
             limit_s,
             left_mm,
-            ahead,
-            ahead in navigator.unread,
+            navigator.towards,
+            navigator.goes_by_length,
             navigator.sighted,
             navigator.expected(),
             navigator.may_cross,

@@ -42,7 +42,7 @@ def test_it_knows_that_the_marker_is_ahead_once_it_has_driven_farther_than_that_
     again.body.rolls(SURELY_SEEN_MM + 10.0)
     again.look()
     again.navigator.turned()
-    assert again.navigator.doubted is None
+    assert (again.navigator.doubted, again.navigator.goes_by_length) == (None, False)
 
 
 def test_turned_back_near_to_the_post_it_goes_by_its_wheels_and_not_after_a_power_cut(walk: Walk, store: Store) -> None:
@@ -50,7 +50,7 @@ def test_turned_back_near_to_the_post_it_goes_by_its_wheels_and_not_after_a_powe
     walk.navigator.turned()
     walk.body.rolls(100.0)
     walk.look()
-    assert walk.navigator.doubted is None
+    assert (walk.navigator.doubted, walk.navigator.goes_by_length) == (None, True)
     assert walk.navigator.way_left_mm == pytest.approx(400.0, abs=1.0)
     again = Walk(store)
     again.look()
