@@ -15,9 +15,11 @@ import pytest
 from benchmarks.body.report import missed
 from benchmarks.fleet import campus
 from benchmarks.fleet.__main__ import PARTS
-from benchmarks.fleet.decisions import Watched
+from benchmarks.fleet.decisions import Watched, until_all_work
 from benchmarks.fleet_simulation.beside_vroom import compared
 from benchmarks.fleet_simulation.honeycomb import Honeycomb
+from fleet.assignment.problem import Stop
+from fleet.schedule.journey import Goal
 from maps import read_map
 from maps.check import check_file
 from tests.app.dispatch.fleet_life import order
@@ -104,3 +106,11 @@ def test_only_first_answers_that_give_an_order_are_timed() -> None:
 
     watched = asyncio.run(asked())
     assert (len(watched.took_s), len(watched.processor_s), len(watched.asked)) == (1, 1, 1)
+
+
+def test_the_start_of_a_fleet_is_over_when_each_robot_has_had_something_to_do() -> None:
+    idle, stop = robot(0), Stop("o1", Goal(1, 10.0, key="o1"), 1)
+    works = replace(idle, route=(stop,))
+    both_idle, one, other = ({"r0": a, "r1": b} for a, b in ((idle, idle), (works, idle), (idle, works)))
+    asked = [problem_of(street(3), robots, []) for robots in (both_idle, one, other, both_idle)]
+    assert [until_all_work(asked[:count]) for count in range(5)] == [0, 1, 2, 2, 2]

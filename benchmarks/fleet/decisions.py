@@ -96,19 +96,30 @@ def measure(samples: Samples) -> dict[str, Any]:
 
 
 def _first_answers(size: Size, capacity: int, seed: int) -> dict[str, Any]:
-    """Of a fleet at work. The very first decisions, for everybody at once, are told apart."""
+    """Of a fleet at work. The first decisions, until each robot has had something to do, are told apart."""
     watched, seen = _at_work(size, capacity, seed)
+    start = until_all_work(watched.asked)
     figures = {
-        "decisions": len(watched.took_s) - size.robots,
-        "at_the_start_ms": _spread(watched.took_s[: size.robots]),
-        "first_ms": _spread(watched.took_s[size.robots :]),
-        "first_processor_ms": _spread(watched.processor_s[size.robots :]),
+        "decisions": len(watched.took_s) - start,
+        "at_the_start_ms": _spread(watched.took_s[:start]),
+        "first_ms": _spread(watched.took_s[start:]),
+        "first_processor_ms": _spread(watched.processor_s[start:]),
         "problem_ms": _spread(seen.beside_s["of"]),
         "traffic_ms": _spread(seen.beside_s["follow_and_answer"]),
         "closure_ms": _spread(_closures_s(seen.traffic, size.hours * 3600.0 + 2 * SETTLES_S)),
     }
     say(f"  {size.robots} robots with {capacity} items each, {size.orders} orders waiting: {figures}")
     return figures
+
+
+def until_all_work(asked: Sequence[AssignmentProblem]) -> int:
+    """How many of these were asked before each robot had had something to do."""
+    idle = set(asked[0].robots) if asked else set[str]()
+    for number, problem in enumerate(asked):
+        idle -= {name for name, robot in problem.robots.items() if robot.route}
+        if not idle:
+            return number
+    return len(asked)
 
 
 def _closures_s(traffic: TrafficController | None, now_s: float) -> list[float]:

@@ -15,7 +15,7 @@ from itertools import islice
 from math import inf
 
 from fleet.schedule.course import Course, OutOfOrderError, Travel
-from fleet.schedule.journey import Journey, Leg, Start, Task, standing, without_first
+from fleet.schedule.journey import Journey, Leg, Start, Task, staying, without_first
 from fleet.schedule.network import Network
 
 
@@ -161,7 +161,7 @@ def in_turn(tasks: Mapping[str, Task], journeys: Mapping[str, Journey]) -> dict[
 
 def standing_in_turn(network: Network, tasks: Mapping[str, Task]) -> dict[str, Task]:
     """The same when there is no schedule: each robot comes in where it is let in, first come, first served."""
-    journeys = {robot: Journey((standing(task.start),), (), task.start.ready_s) for robot, task in tasks.items()}
+    journeys = {robot: staying(task.start) for robot, task in tasks.items()}
     still = {robot: Task(task.start, (), task.home) for robot, task in tasks.items()}
     return in_turn(tasks, retimed(network, still, journeys))
 

@@ -135,6 +135,11 @@ def standing(start: Start) -> Leg:
     return Leg(start.lane, start.entered_s, start.arrives_s, start.post, start.at_home, 0, start.ready_s, over_s)
 
 
+def staying(start: Start) -> Journey:
+    """The journey of one that stays where it is, or where it comes to."""
+    return Journey((standing(start),), (), start.ready_s)
+
+
 def stays(legs: Sequence[Leg]) -> Iterator[tuple[Leg, float]]:
     """Each leg with the time at which its stay ends; infinity for the last."""
     for at, leg in enumerate(legs):

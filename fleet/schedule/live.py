@@ -7,7 +7,7 @@ from typing import Final
 
 from fleet.schedule.course import OutOfOrderError
 from fleet.schedule.execution import caught_up, in_turn, one_behind_the_other, retimed, standing_in_turn, waits_for
-from fleet.schedule.journey import Goal, Journey, Task, standing
+from fleet.schedule.journey import Goal, Journey, Task, staying
 from fleet.schedule.network import Network
 from fleet.schedule.participant import Participant, open_network
 from fleet.schedule.planning import Insertion, Schedule, first_plan, improve, insert, plan, plan_what_can_be
@@ -177,7 +177,7 @@ class LiveSchedule:
         while True:
             again = stay.union(concerned)
             still = {name: replace(task, goals=()) if name in again else task for name, task in tasks.items()}
-            journeys = {name: _stays(tasks[name]) if name in stay else self.planned[name] for name in tasks}
+            journeys = {name: staying(tasks[name].start) if name in stay else self.planned[name] for name in tasks}
             try:
                 return sorted(again), retimed(self.network, still, journeys)
             except OutOfOrderError as error:
@@ -205,10 +205,6 @@ class LiveSchedule:
             return False
         self.planned = dict(schedule.journeys)
         return True
-
-
-def _stays(task: Task) -> Journey:
-    return Journey((standing(task.start),), (), task.start.ready_s)
 
 
 def _wants(task: Task) -> tuple[Iterable[tuple[str, int]], int | None]:

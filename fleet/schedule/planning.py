@@ -12,7 +12,7 @@ from random import Random
 from typing import Final
 
 from fleet.schedule.evacuation import evacuate
-from fleet.schedule.journey import Journey, Task, standing
+from fleet.schedule.journey import Journey, Task, staying
 from fleet.schedule.neighbourhood import neighbourhood
 from fleet.schedule.network import Network
 from fleet.schedule.occupied import Occupied
@@ -189,7 +189,7 @@ def _home_who_can(network: Network, tasks: Tasks, rng: Random) -> tuple[Schedule
     """As many robots home as can be, without goals; the others stay where they stand. First each goes round those that
     stay; then others also make way for it, if all that were to come home still do."""
     planned = {robot: Task(task.start, (), None) for robot, task in tasks.items()}
-    stays = {robot: Journey((standing(task.start),), (), task.start.ready_s) for robot, task in tasks.items()}
+    stays = {robot: staying(task.start) for robot, task in tasks.items()}
     schedule = Schedule(stays, 0.0, tuple(sorted(tasks)))
 
     def goes_round(more: Tasks, robot: str) -> Schedule | None:
