@@ -24,12 +24,13 @@ class Bottleneck:
 @dataclass(frozen=True)
 class Carrying:
     """`homes`: home places by post; there can be as many robots as there are of them together, but one alone where
-    `bays_on_floor` is false."""
+    `bays_on_floor` is false. `without_dock`: those whose robot finds no dock, neither at home nor to share."""
 
     robots: int
     homes: dict[str, int]
     bottleneck: Bottleneck | None
     bays_on_floor: bool
+    without_dock: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         if not self.robots:
@@ -38,6 +39,11 @@ class Carrying:
             return "It carries 1 robot, since no post has a bay on the floor."
         where = ", ".join(f"{post} {homes}" for post, homes in self.homes.items())
         said = f"It carries {self.robots} robot{'s' if self.robots > 1 else ''}, one for each home place ({where})."
+        if self.without_dock:
+            said += (
+                f" Robots at home in {', '.join(self.without_dock)} find no dock: a person has to charge them, unless "
+                "their bay, or one that is no home, gets a dock."
+            )
         if self.bottleneck is None:
             return said
         bound = self.bottleneck
@@ -53,7 +59,9 @@ def carrying(campus: CampusMap, speed_m_s: float = ASSUMED_SPEED_M_S) -> Carryin
     bounds = [bound for corridor in campus.corridors if (bound := _bound(campus, corridor, speed_m_s)) is not None]
     narrowest = min(bounds, key=lambda bound: bound.deliveries_per_h, default=None)
     bays_on_floor, robots = _has_bays_on_floor(campus), sum(homes.values())
-    return Carrying(robots if bays_on_floor else min(robots, 1), homes, narrowest, bays_on_floor)
+    lacking = tuple(place.name for place in campus.track.home_bays if place.dock is None)
+    without_dock = () if any(place.is_lent for place in campus.track.docks()) else lacking
+    return Carrying(robots if bays_on_floor else min(robots, 1), homes, narrowest, bays_on_floor, without_dock)
 
 
 def places_problems(campus: CampusMap) -> Iterator[Problem]:

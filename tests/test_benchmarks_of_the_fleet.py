@@ -51,6 +51,7 @@ def test_a_part_measures_every_figure_that_it_is_judged_by() -> None:
 
 @pytest.mark.parametrize("name", campus.FLEETS)
 @pytest.mark.nightly
+@pytest.mark.timeout(900)
 def test_no_robot_is_stuck_and_none_meets_another_while_robots_die_and_corridors_are_closed(name: str) -> None:
     """A working day of each; weeks in `make bench-fleet ARGS="campus"`."""
     seen = campus.look_at((name, 3, 18.0))

@@ -206,7 +206,10 @@ class Mind:
         if not self.missions.held.recharging:
             self.missions.report_charge("low", body.at, body.ratio)
         if not body.docked:
-            if await self._is_at(self._nearest_dock()):
+            near = nearest_dock(self.track, body.post, self.home, frozenset())
+            if near is None:
+                await self._idle()  # where it blocks no other; a person has to bring it
+            elif await self._is_at(near):
                 await self._dock()
             return
         self.route.release()
@@ -215,11 +218,6 @@ class Mind:
             self.missions.report_charge("charged", body.at, body.ratio)
         else:
             await self._news_comes(Activity.CHARGING)
-
-    def _nearest_dock(self) -> str:
-        near = nearest_dock(self.track, self.body.post, self.home, frozenset())
-        assert near is not None
-        return near
 
     async def _dock(self) -> None:
         self._shows(Activity.DRIVING)

@@ -130,6 +130,16 @@ def test_a_dock_in_a_bay_may_be_for_all_robots_to_charge(tmp_path: Path) -> None
     assert "dock_without_home" in {p.kind for p in places_problems(no_home)}
 
 
+def test_it_is_said_whose_robot_finds_no_dock(tmp_path: Path) -> None:
+    campus = find_map(on_the_floor(tmp_path))
+    assert carrying(campus).without_dock == ("a_bay1",)
+    assert "Robots at home in a_bay1 find no dock" in str(carrying(campus))
+    with_one = find_map(on_the_floor(tmp_path, b="[[post.bay]]\nbearing_deg = 90\ndock = true\n"))
+    assert carrying(with_one).without_dock == ()
+    assert "find no dock" not in str(carrying(with_one))
+    assert carrying(builtin_map("carleton")).without_dock == ()
+
+
 def test_the_check_says_it_to_people_and_to_programs(tmp_path: Path) -> None:
     path = str(on_the_floor(tmp_path))
     said = CliRunner().invoke(cli, ["check", path])
