@@ -24,13 +24,13 @@ class Bottleneck:
 @dataclass(frozen=True)
 class Carrying:
     """`homes`: home places by post; there can be as many robots as there are of them together, but one alone where
-    `bays_on_floor` is false. `without_dock`: those whose robot finds no dock, neither at home nor to share."""
+    `bays_on_floor` is false. `without_dock`: bays of robots that find no dock, neither at home nor to share."""
 
     robots: int
     homes: dict[str, int]
     bottleneck: Bottleneck | None
     bays_on_floor: bool
-    without_dock: tuple[str, ...] = ()
+    without_dock: tuple[str, ...]
 
     def __str__(self) -> str:
         if not self.robots:

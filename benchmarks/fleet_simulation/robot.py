@@ -32,6 +32,7 @@ from robot.mission.store import Store
 LOOKS_AT_BATTERY_S: Final = 60.0
 DENIED_S: Final = 15.0
 NO_WAY_S: Final = 30.0
+NO_DOCK_OPEN: Final = "no_dock_open"
 SILENCE_S: Final = 120.0
 PURPOSES: Final = {
     StopAction.LOAD: Purpose.LOAD,
@@ -207,8 +208,9 @@ class Mind:
             self.missions.report_charge("low", body.at, body.ratio)
         if not body.docked:
             near = nearest_dock(self.track, body.post, self.home, frozenset())
+            self.missions.report_fault(NO_DOCK_OPEN, "No way leads to a dock.", body.at, cleared=near is not None)
             if near is None:
-                await self._idle()  # where it blocks no other; a person has to bring it
+                await self._idle()  # a person has to bring it, and until then it blocks no other
             elif await self._is_at(near):
                 await self._dock()
             return
