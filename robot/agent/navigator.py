@@ -12,17 +12,16 @@ from maps import CampusMap, NoRoute, corridor_name, shortest_route
 from maps.geometry import wrapped
 from protocol.parts import Leg
 from robot.agent.tracking import Tracker
-from robot.drivers.interfaces import BaseState, BodyShape, Odometry
+from robot.drivers.interfaces import BodyShape
 from robot.localization.bays import bay_for, places_to_stand
 from robot.localization.closed import Closed, open_way
-from robot.localization.counted_turn import TurnBegun
 from robot.localization.detour import detour_from, place_aside
 from robot.localization.directions import PLAIN_TURNS, Way, kept_from, next_post, sector
 from robot.localization.docks import nearest_dock, way_out
 from robot.localization.expected import SHARE, wrong_corridor
 from robot.localization.place import AtPost, Between, Coming, Facing, Leaving, Unknown
 from robot.localization.remembering import Moment, may_look_back_mm
-from robot.localization.steps import corridor_between, gone_astray, marked, turned_round
+from robot.localization.steps import gone_astray, marked, turned_round
 from robot.mission.mission import MissionManager
 from robot.skills.interfaces import View
 
@@ -41,9 +40,7 @@ class Navigator(Tracker):
     def __init__(
         self, campus: CampusMap, home: str | None, missions: MissionManager, now: float, shape: BodyShape | None = None
     ) -> None:
-        super().__init__(campus, home, missions)
-        self._shape, self._base = shape or BodyShape(), BaseState(now)
-        self._turn = missions.turns.kept() if self._moment is Moment.TURNING else None
+        super().__init__(campus, home, missions, now, shape or BodyShape())
         self.destination: str | None = None
         self.closed = Closed(missions.closed_ages_s(), missions.keep_closed, now)
         missions.open_way = partial(open_way, campus, self.closed)
@@ -52,18 +49,7 @@ class Navigator(Tracker):
     def look(self, view: View) -> None:
         """Take in what the body sees now."""
         self.closed.pass_time(view.at_s)
-        if view.base:
-            self._base = view.base
-            self._recall_turn(view.odometry)
         super().look(view)
-
-    def _recall_turn(self, odometry: Odometry) -> None:
-        """It was switched off in a turn: what its base has counted since tells which way it looks."""
-        turn, self._turn = self._turn, None
-        looks_rad = turn.looks_now_rad(self._base, self._shape) if turn else None
-        if looks_rad is not None:
-            self._facing = Facing.of(looks_rad, odometry)
-            self._compass.set(looks_rad, odometry)
 
     # What actions and percepts ask.
 
@@ -91,7 +77,7 @@ class Navigator(Tracker):
         if it has a service: each line may be another robot's there."""
         place = self._place
         looks_anywhere = self.crossing and self._facing is None and not self._duties.claims.alone
-        if self.at and (self._turn or looks_anywhere):
+        if self.at and (self._turning.not_yet_known or looks_anywhere):
             return self.at
         in_doubt = isinstance(place, Between | Leaving) and place.doubted
         return (place.towards or place.here) if in_doubt else None
@@ -322,11 +308,6 @@ class Navigator(Tracker):
             self._head_for(self._next_post())
             self._note_turn()
 
-    def _note_turn(self) -> None:
-        looks_rad, base = self._looks_rad(self._odometry), self._base
-        turn = None if looks_rad is None else TurnBegun(looks_rad, base.left_count, base.right_count)
-        self._note_moment(Moment.TURNING, turn)
-
     def begin_docking(self) -> None:
         """Into the dock or out of it: in between it stands beside the line, and looks anywhere."""
         if isinstance(self._place, AtPost):
@@ -341,11 +322,10 @@ class Navigator(Tracker):
             if self._place.blind:
                 self._note_moment(Moment.BLIND)
             return
-        ahead = self._post_ahead()
-        corridor = corridor_between(self.campus, place.here, ahead.name) if ahead and place.here else None
-        if ahead and corridor:
-            self._look_along(corridor.heading_leaving(corridor.other(ahead.name)))
-            self._head_for(ahead.name)
+        corridor = self._corridor_ahead()
+        if corridor and place.here:
+            self._look_along(corridor.heading_leaving(place.here))
+            self._head_for(corridor.other(place.here))
 
     def _after_a_miss(self, place: Between) -> Between:
         """It turns back after a foreign marker, and the one that was expected has not come."""

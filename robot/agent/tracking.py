@@ -4,23 +4,23 @@ what must survive a power cut is written down."""
 import math
 from dataclasses import replace
 
-from maps import CampusMap, Corridor, Post
+from maps import CampusMap, Corridor
 from maps.geometry import wrapped
 from protocol.parts import Leg
 from robot.agent.unread_markers import UnreadMarkers
-from robot.drivers.interfaces import Odometry, Sighting
+from robot.drivers.interfaces import BodyShape, Odometry, Sighting
 from robot.localization.approach import is_aslant, post_ahead_mm
 from robot.localization.astray import FROM_MM, TO_MM, Compass, really_towards
 from robot.localization.bays import evidence_of, occupied
 from robot.localization.by_fixes import near_dock
-from robot.localization.counted_turn import TurnBegun
-from robot.localization.directions import turn_towards_rad
+from robot.localization.counted_turn import CountedTurn
+from robot.localization.directions import corridor_ahead, looks_otherwise, turn_towards_rad
 from robot.localization.docks import dock_post
 from robot.localization.expected import Expected, Foreign, agree, expected, hangs_beside_this_line, is_own
 from robot.localization.facing import facing_by
 from robot.localization.granted import behind
 from robot.localization.place import AtPost, Between, Coming, Facing, Leaving, Place, Unknown
-from robot.localization.remembering import Moment, remembered
+from robot.localization.remembering import Moment, looks_as_arrived, remembered
 from robot.localization.steps import corridor_between, gone_astray, has_left, has_reached, marked, searched, set_out
 from robot.localization.way_scale import WayScale
 from robot.mission.mission import MissionManager
@@ -36,8 +36,6 @@ LIFTED = "wheel_drop"
 """The fault during which a person holds the robot in their hands, perhaps to put it down elsewhere."""
 AWAY_RAD = math.radians(35)
 """Turned away from its corridor by more, a robot in search of the line sees no marker where it is."""
-SAME_WAY_RAD = math.radians(60)
-"""A robot that looks along a corridor to within this is taken to be going there."""
 FOREIGN_MARKER = "foreign_marker"
 KEPT_POSTS = 500
 """More than a run with a summary visits; a robot runs for months."""
@@ -49,7 +47,9 @@ on."""
 class Tracker:
     """The place as of the last look. What is driven is told by odometry, what is meant by `Navigator`."""
 
-    def __init__(self, campus: CampusMap, home: str | None, missions: MissionManager) -> None:
+    def __init__(
+        self, campus: CampusMap, home: str | None, missions: MissionManager, now: float, shape: BodyShape
+    ) -> None:
         self.campus, self._own_home = campus, home
         self.visited: list[str] = []
         """The posts reached, in order, the newest ones; the same one twice only after another."""
@@ -63,6 +63,8 @@ class Tracker:
         self._duties = missions
         self._moment = Moment(missions.held.moment) if missions.held.moment else None
         self._place, self._facing = remembered(campus, missions.held.position, self._moment)
+        kept = missions.turns.kept() if self._moment is Moment.TURNING else None
+        self._turning = CountedTurn(kept, shape, now)
         self._odometry = Odometry()
         self._disturbed = self._set_out_disturbed = 0  # by searches and bumps, so far
         self._scale = WayScale()
@@ -105,6 +107,9 @@ class Tracker:
 
     def look(self, view: View) -> None:
         """Take in what the body sees now."""
+        if view.base and (looks_rad := self._turning.hear(view.base)) is not None:
+            self._facing = Facing.of(looks_rad, view.odometry)
+            self._compass.set(looks_rad, view.odometry)
         before, self._odometry = self._odometry, view.odometry
         self._disturbed = view.find_line_episodes + view.bumps
         if view.motion in AT_THE_POST and isinstance(self._place, AtPost | Leaving) and self._facing:
@@ -282,14 +287,21 @@ class Tracker:
         if place.by_marker or (is_near and self._moment is not Moment.BLIND):
             self._note_moment(Moment.NEARING)
 
-    def _note_moment(self, moment: Moment, turn: TurnBegun | None = None) -> None:
+    def _note_moment(self, moment: Moment) -> None:
         self._moment = moment
-        self._duties.note_moment(moment, turn)
+        self._duties.note_moment(moment)
+
+    def _note_turn(self) -> None:
+        self._moment = Moment.TURNING
+        self._duties.note_moment(self._moment, self._turning.begun(self._looks_rad(self._odometry)))
 
     def _note_seen(self, post: str) -> None:
-        """It stands at this post; what was under way, if anything, has ended where it should."""
-        self._moment = None
-        self._duties.seen(post)
+        """It stands at this post; what was under way, if anything, has ended where it should. One that has come back to
+        it does not look as it did when it came there first: then the way it looks is kept as in a turn."""
+        looks_rad = self._looks_rad(self._odometry)
+        as_arrived = looks_as_arrived(self.campus, self._duties.held.position, post, looks_rad)
+        self._moment = None if as_arrived else Moment.TURNING
+        self._duties.seen(post, self._moment, self._turning.begun(looks_rad))
 
     def _check_way(self) -> None:
         """Check that it follows the line that it was going to."""
@@ -315,17 +327,10 @@ class Tracker:
         if place.towards is None:
             return
         arrived = AtPost(place.towards, at_mm, now_mm, corridor, by_marker)
-        if corridor and not self._came_back_otherwise(corridor, arrived.here):
+        looks_rad = self._looks_rad(self._odometry)
+        if corridor and not (arrived.here == place.here and looks_otherwise(corridor, arrived.here, looks_rad)):
             self._facing = Facing.of(corridor.heading_arriving(arrived.here), self._odometry)
         self._arrive(arrived)
-
-    def _came_back_otherwise(self, corridor: Corridor, post: str) -> bool:
-        """Return whether it is back at the post that it left, and does not look as along the corridor: it has backed
-        up, or never was on that line."""
-        looks_rad = self._looks_rad(self._odometry)
-        if post != self._place.here or looks_rad is None:
-            return False
-        return abs(wrapped(looks_rad - corridor.heading_arriving(post))) > SAME_WAY_RAD
 
     def _arrive(self, arrived: AtPost) -> None:
         before, self._place, post = self._place, arrived, arrived.here
@@ -365,8 +370,7 @@ class Tracker:
             return
         self._set_out_disturbed = self._disturbed
         self._scale.set_out(place.at_mm if place.here not in self.unread else None, self._disturbed)
-        ahead = self._post_ahead()
-        corridor = corridor_between(self.campus, place.here, ahead.name) if ahead else None
+        corridor = self._corridor_ahead()
         self._place = set_out(place, corridor, self._counted_m(corridor.length_m) if corridor else 0.0)
         self._head_for(self._place.towards)
         if corridor is None:
@@ -376,14 +380,10 @@ class Tracker:
         self._moment = None
         self._duties.heading_for(towards)
 
-    def _post_ahead(self) -> Post | None:
-        """The neighbour that the robot looks towards."""
-        here = self.at
-        posts = [post for post, _ in self.campus.neighbours(here)] if here else []
-        turns = {post.name: self._turn_to(post.name) for post in posts}
-        known = [(abs(turn), post) for post in posts if (turn := turns[post.name]) is not None]
-        nearest = min(known, key=lambda one: one[0], default=None)
-        return nearest[1] if nearest and nearest[0] < SAME_WAY_RAD else None
+    def _corridor_ahead(self) -> Corridor | None:
+        """The one that the robot looks along."""
+        here, looks_rad = self.at, self._looks_rad(self._odometry)
+        return None if here is None or looks_rad is None else corridor_ahead(self.campus, here, looks_rad)
 
     def _turn_to(self, neighbour: str) -> float | None:
         """None while the way it looks is not known."""

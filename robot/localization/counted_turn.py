@@ -28,3 +28,24 @@ class TurnBegun:
         turned = advanced(Odometry(), begun, base, shape)
         is_of_this_turn = turned.travelled_mm <= MOST_MOVED_MM and abs(turned.heading_rad) <= MOST_TURNED_RAD
         return wrapped(self.looks_rad + turned.heading_rad) if is_of_this_turn else None
+
+
+class CountedTurn:
+    """The newest turn that was written down, and the base that counts it. `not_yet_known`: it was under way when the
+    robot was switched off, and the base has not been heard since."""
+
+    def __init__(self, kept: TurnBegun | None, shape: BodyShape, now: float) -> None:
+        self._kept, self._shape, self._base = kept, shape, BaseState(now)
+
+    @property
+    def not_yet_known(self) -> bool:
+        return self._kept is not None
+
+    def hear(self, base: BaseState) -> float | None:
+        """The way it looks after a restart in a turn, told once; None: there is nothing to tell."""
+        kept, self._kept, self._base = self._kept, None, base
+        return kept.looks_now_rad(base, self._shape) if kept else None
+
+    def begun(self, looks_rad: float | None) -> TurnBegun | None:
+        """What to write down of a turn that begins now; None: the way the robot looks is not known."""
+        return None if looks_rad is None else TurnBegun(looks_rad, self._base.left_count, self._base.right_count)

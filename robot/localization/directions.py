@@ -3,11 +3,14 @@
 import math
 from enum import StrEnum
 
-from maps import CampusMap, corridor_name, shortest_route
+from maps import CampusMap, Corridor, corridor_name, shortest_route
 from maps.geometry import wrapped
 from protocol.parts import Leg
 
 PLAIN_TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "behind": math.pi}
+
+SAME_WAY_RAD = math.radians(60)
+"""A robot that looks along a corridor to within this is taken to be going there."""
 
 
 class Way(StrEnum):
@@ -34,6 +37,19 @@ def sector(turn_rad: float) -> Way:
 def turn_towards_rad(campus: CampusMap, facing_rad: float, post: str, neighbour: str) -> float:
     """Return how far a robot that stands at `post` has to turn (positive to the left) to leave for `neighbour`."""
     return wrapped(campus.corridor(post, neighbour).heading_leaving(post) - facing_rad)
+
+
+def corridor_ahead(campus: CampusMap, post: str, looks_rad: float) -> Corridor | None:
+    """The corridor of `post` that a robot there looks along, if any."""
+    turns = [(abs(turn_towards_rad(campus, looks_rad, post, one.name)), by) for one, by in campus.neighbours(post)]
+    turn_rad, corridor = min(turns, key=lambda one: one[0], default=(math.inf, None))
+    return corridor if turn_rad < SAME_WAY_RAD else None
+
+
+def looks_otherwise(corridor: Corridor, post: str, looks_rad: float | None) -> bool:
+    """Return whether it is known that a robot at `post` does not look as one that came along this corridor: it has
+    backed up, turned, or was on another line."""
+    return looks_rad is not None and abs(wrapped(looks_rad - corridor.heading_arriving(post))) > SAME_WAY_RAD
 
 
 def turn_at_rad(campus: CampusMap, came_from: str, post: str, neighbour: str) -> float:

@@ -5,6 +5,7 @@ from enum import StrEnum
 from maps import CampusMap
 from protocol import parts
 from robot.drivers.interfaces import Odometry
+from robot.localization.directions import looks_otherwise
 from robot.localization.place import AtPost, Between, Facing, Leaving, Place, Unknown
 from robot.localization.steps import corridor_between
 
@@ -57,6 +58,14 @@ def _on_its_way(campus: CampusMap, post: str, towards: str, moment: Moment | Non
         return Leaving(post, doubted=doubted, blind=blind), None
     facing_rad = corridor.heading_leaving(post)
     return Between(corridor, post, towards, doubted=doubted, blind=blind), Facing.of(facing_rad, Odometry())
+
+
+def looks_as_arrived(campus: CampusMap, before: parts.Position, post: str, looks_rad: float | None) -> bool:
+    """Return whether a robot that was seen at `post` just now, and `before` that as it says, would be right after a
+    restart about the way it looks. Nothing is said of it where no corridor leads from the one post to the other."""
+    previous = before.previous if before.post == post else before.post
+    came_by = corridor_between(campus, post, previous) if previous else None
+    return came_by is None or (looks_rad is not None and not looks_otherwise(came_by, post, looks_rad))
 
 
 def may_look_back_mm(place: Place) -> float:

@@ -281,7 +281,7 @@ class Memory:
         """Where the robot was last seen."""
         return self._read("position", _POSITION, Position())
 
-    def see(self, post: str, at: datetime, towards: str | None = None) -> Position:
+    def see(self, post: str, at: datetime, towards: str | None = None, moment: str | None = None) -> Position:
         """The robot was seen at `post`; the post it was seen at before becomes `previous`."""
         with self._store.transaction():
             before = self.position()
@@ -290,7 +290,7 @@ class Memory:
                 self._write("detour", _LEG, None)
             position = Position(post=post, previous=previous, towards=towards, seen_at=at)
             self._write("position", _POSITION, position)
-            self._write("moment", _WORD, None)
+            self._write("moment", _WORD, moment)
             return position
 
     def head(self, towards: str | None) -> Position:

@@ -363,9 +363,11 @@ class MissionManager:
 
     # Where it was seen.
 
-    def seen(self, post: str) -> None:
+    def seen(self, post: str, moment: str | None = None, turn: TurnBegun | None = None) -> None:
         """The robot stands at a marker: remembered at once, since after a power cut nothing else tells where it is."""
-        self.memory.see(post, self.utc())
+        with self._store.transaction():
+            self.turns.keep(turn)
+            self.memory.see(post, self.utc(), moment=moment)
         self._changed()
 
     def occupies(self, where: Where, post: str, towards: str | None, evidence: Evidence, way_mm: int | None) -> None:

@@ -70,3 +70,49 @@ def test_a_power_cut_on_a_line_that_it_does_not_know_leaves_it_on_one_of_its_pos
     again.look()
     again = Walk(store)
     assert (again.navigator.here, again.navigator.doubted) == ("post2", "post3"), "its marker told which line it is on"
+
+
+def turned_back_from_post3(walk: Walk) -> None:
+    """At post2, where it came from post1, it went on towards post3, and turns round half way."""
+    walk.navigator.place("post1", "post2")
+    walk.drives_to("post2")
+    walk.navigator.destination = "post3"
+    walk.turns("left")
+    walk.navigator.leave()
+    walk.body.rolls(900.0)
+    walk.look()
+    walk.navigator.begin_turn()
+    walk.body.turns(math.pi)
+    walk.look()
+    walk.navigator.turned()
+
+
+def test_back_at_a_post_it_knows_after_a_power_cut_that_it_looks_as_it_came_back(walk: Walk, store: Store) -> None:
+    turned_back_from_post3(walk)
+    walk.body.rolls(900.0)
+    walk.look()
+    assert walk.navigator.at == "post2"
+    again = Walk(store)
+    again.look()
+    again.navigator.destination = "post3"
+    assert (again.navigator.way(), again.navigator.doubted) == ("behind", None), "from post1 it would lie to its left"
+
+
+def test_back_at_a_post_and_not_knowing_how_it_looks_it_does_not_know_after_a_power_cut(
+    walk: Walk, store: Store
+) -> None:
+    """Killed on its way back, it has forgotten along which line that was."""
+    turned_back_from_post3(walk)
+    walk.look()
+    again = Walk(store)
+    again.look()
+    again.body.rolls(600.0)
+    again.look()
+    again.body.sees("post2")
+    again.look()
+    again.body.rolls(300.0)
+    again.look()
+    assert (again.navigator.at, again.navigator.looks_anywhere) == ("post2", True)
+    once_more = Walk(store)
+    once_more.look()
+    assert (once_more.navigator.at, once_more.navigator.looks_anywhere) == ("post2", True)
