@@ -3,6 +3,7 @@
 To give the agent something new to do, add a row. An action ends done or failed(reason); nothing is ever ignored.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, get_args
@@ -53,6 +54,9 @@ def _one(
 
 # Moving.
 
+ALONE_RAD = WIDEST_RAD + math.radians(20)
+"""A line is the only one that may be under the diodes if no other lies within this: the way it believes to look may be
+wrong by so much, after a restart in a turn that it began aslant."""
 FOLLOW_LEAST_S, FOLLOW_TIMES = 180.0, 3.0
 """The watchdog of the way: so many times the time that the corridor should take, and a while for searches."""
 
@@ -68,7 +72,7 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
     aslant_rad = navigator.aslant_rad
 
     def straighten() -> Skill | None:
-        on_the_line = abs(aslant_rad) < WIDEST_RAD and over_line(hands.view) and navigator.lines_ahead(WIDEST_RAD) <= 1
+        on_the_line = abs(aslant_rad) < WIDEST_RAD and over_line(hands.view) and navigator.lines_ahead(ALONE_RAD) <= 1
         if on_the_line or not (aslant_rad or navigator.looks_anywhere):
             return None
         if not aslant_rad:

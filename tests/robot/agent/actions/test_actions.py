@@ -1,6 +1,7 @@
 """Actions: what a program asks for is begun, refused by name, ended or cancelled; nothing vanishes."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from protocol.proofs import ShownCode
 from robot.agent.actions.table import ACTIONS, PAPER_ACTIONS, STANDS_FOR_HANDS_S
 from robot.core.config import PerceptMode
+from robot.drivers.interfaces import LineReading
 from robot.mission.store import Store
 from robot.skills.interfaces import Done, Failed
 from tests.robot.agent.actions.bench import MISSION, Bench
@@ -80,6 +82,23 @@ def test_a_robot_whose_turn_was_interrupted_straightens_up_before_it_follows_the
     assert bench.body.started == ["turn", "follow_line"]
     bench.body.end("follow_line", Done("post3"))
     assert bench.actions.finished(2.0) == [(id_, None)]
+
+
+@pytest.mark.parametrize(
+    ("aslant_deg", "begins"), [(-35, ["follow_line"]), (35, ["turn"])], ids=["no other line is near", "another is near"]
+)
+def test_a_line_under_its_diodes_is_followed_at_once_where_it_can_be_no_other(
+    bench: Bench, aslant_deg: float, begins: list[str]
+) -> None:
+    """At post2 the line to post1 begins to the left of that to post3. The way it looks is known to some 15 degrees."""
+    bench.navigator.place("post2", "post3")
+    bench.result("set_destination(post3)")
+    bench.body.turns(math.radians(aslant_deg))
+    bench.body.view = replace(bench.body.view, reading=LineReading(True, False, False))
+    bench.hands.view = bench.body.view
+    bench.navigator.look(bench.body.view)
+    bench.ask("follow_line")
+    assert bench.body.started == begins
 
 
 def test_a_second_motion_is_busy_and_the_first_goes_on(bench: Bench) -> None:
