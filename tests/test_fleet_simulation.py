@@ -47,7 +47,7 @@ def lived(fleet: Fleet, hours: float, seed: int) -> dict[str, Any]:
 
 
 def test_the_same_seed_is_the_same_life_whatever_befalls_robots() -> None:
-    fleet = Fleet(robots=2, ground=Ground("test_track", docks=2), faults=OFTEN, pace=CALM)
+    fleet = Fleet(robots=2, ground=Ground("test_track"), faults=OFTEN, pace=CALM)
     first = lived(fleet, hours=0.25, seed=1)
     assert first["astray"] == []
     assert first["delivered"] > 0
@@ -58,7 +58,7 @@ def test_the_same_seed_is_the_same_life_whatever_befalls_robots() -> None:
 
 def test_robots_that_go_in_without_permission_are_seen_to_meet() -> None:
     """Those that wait for it do not."""
-    ground = Ground("test_track", docks=3)
+    ground = Ground("test_track")
     unkept = lived(Fleet(robots=3, ground=ground, unasked=True, pace=CALM), hours=0.3, seed=2)
     kept = lived(Fleet(robots=3, ground=ground, pace=CALM), hours=0.2, seed=2)
     assert {"corridor", "crossing"} & unkept["met"].keys(), "which of them depends on how strings hash"

@@ -21,8 +21,7 @@ from benchmarks.fleet_simulation.process import simulates_only
 from benchmarks.fleet_simulation.service import CALM
 from benchmarks.fleet_simulation.simulation import Fleet, Run
 
-TUNNELS, TRACK, HONEYCOMB = Ground(), Ground("test_track", docks=3), Honeycomb(20, 6)
-"""The track as it ships has one dock, in the home of one robot: the other two could not charge."""
+TUNNELS, TRACK, HONEYCOMB = Ground(), Ground("test_track"), Honeycomb(20, 6)
 FLEETS: Final = {
     "four_robots": Fleet(4, TUNNELS, 1, faults=MANY, demand=RushHours(6.0), pace=CALM),
     "two_items_each": Fleet(4, TUNNELS, 2, faults=MANY, demand=RushHours(6.0), pace=CALM),

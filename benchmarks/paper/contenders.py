@@ -33,7 +33,7 @@ class Contender:
 
     def assembled(self, data: Path, clock: Clock, seed: int, *, in_memory: bool, **settings: Any) -> Parts:
         """A robot that has been told what to do; `watchers` of the daemon play the people."""
-        asked = {**PACK, **self.settings, **settings, "data": data, "mind.program": self.program}
+        asked = {**PACK, "home": DOCK, **self.settings, **settings, "data": data, "mind.program": self.program}
         parts = assemble(load_settings(None, asked), clock, Simulation(START, seed=seed, in_memory=in_memory))
         if self.program:
             goal = f"collectAndDeliverMail({SENDER},{RECIPIENT})"

@@ -48,7 +48,7 @@ def printed(tmp_path_factory) -> list[np.ndarray]:
     folder = tmp_path_factory.mktemp("sheets")
     result = run("test_track", "--out", str(folder), "--april-tags")
     assert result.exit_code == 0
-    assert "25 sheets for 5 posts and 8 bays" in result.stdout
+    assert "27 sheets for 5 posts and 8 bays" in result.stdout
     return paper(folder / "test_track.pdf")
 
 

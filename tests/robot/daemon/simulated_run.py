@@ -15,6 +15,8 @@ from robot.ops.assembly import Parts, Simulation, assemble
 from robot.ops.runners import LockstepRunner
 
 CODES = {Purpose.LOAD: "CM1:" + "a1" * 16, Purpose.RECEIVE: "CM1:" + "b2" * 16}
+HOME = "post5_bay1"
+"""On the test track: the paper's dock."""
 # A strong charger, so that a charge takes a minute and not an hour.
 QUICK = {"rates.line_hz": 50.0, "battery.simulated_charger_ma": 60_000.0}
 LETTER = Mission(
@@ -35,6 +37,9 @@ class SimulatedRun:
         dotted = {name.replace("__", "."): value for name, value in settings.items()}
         battery = dotted.pop("battery_ratio", None)
         assert battery is None or isinstance(battery, float)
+        if "map" not in dotted:
+            dotted.setdefault("home", HOME)
+            start = start or f"dock:{HOME}"
         self.settings = load_settings(None, {**QUICK, "data": data, **dotted})
         self.parts: Parts = assemble(self.settings, self.clock, Simulation(start, battery, in_memory=True))
         assert self.parts.robot is not None

@@ -44,8 +44,8 @@ class WatchedRobot:
 
     def __init__(self, folder: Path) -> None:
         self.clock, self.shown = SteppedClock(), Shown()
-        settings = load_settings(None, {"data": folder, "rates.line_hz": 50.0})
-        self.parts: Parts = assemble(settings, self.clock, Simulation(seed=1, in_memory=True))
+        settings = load_settings(None, {"home": "post5_bay1", "data": folder, "rates.line_hz": 50.0})
+        self.parts: Parts = assemble(settings, self.clock, Simulation("dock:post5", seed=1, in_memory=True))
         self.runner = LockstepRunner(self.parts.daemon.loops(), self.clock)
         self.agent = self.parts.mind.agent
         self.reporter = DiagnosticsReporter(
