@@ -118,7 +118,8 @@ class Rig:
         ran = self.type_code("r1", code, self.settings_file)
         assert ran.returncode == 0, ran.stderr
         settings = self.settings_file.read_text()  # the robot speaks through the wire that can be cut
-        self.settings_file.write_text(settings.replace(f":{self.port}/", f":{self.wire.port}/"))
+        settings = settings.replace(f":{self.port}/", f":{self.wire.port}/")
+        self.settings_file.write_text('home = "post5_bay1"\n' + settings)
 
     def type_code(self, name: str, code: str, settings_file: Path) -> subprocess.CompletedProcess[str]:
         """Run `robot enrol` with a code."""
@@ -183,6 +184,8 @@ class Rig:
     def start_robot(self) -> None:
         arguments = ["robot", "--simulated", "--config", str(self.settings_file), "--data", str(self.folder / "robot")]
         arguments += ["--clock", str(self.clock_file), "--door", str(self.door)]
+        if not (self.folder / "robot").exists():  # later it is where it was
+            arguments += ["--start", "dock:post5"]
         self._start("robot", arguments, dict(os.environ))
 
     def stop(self, name: str) -> None:
