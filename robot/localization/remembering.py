@@ -1,24 +1,27 @@
 """The place that a robot knows when it is switched on again."""
 
+import math
 from enum import StrEnum
 
 from maps import CampusMap
+from maps.geometry import wrapped
 from protocol import parts
 from robot.drivers.interfaces import Odometry
-from robot.localization.directions import looks_otherwise
 from robot.localization.place import AtPost, Between, Facing, Leaving, Place, Unknown
 from robot.localization.steps import corridor_between
 
 LOOKS_BACK_MM = 600.0
 """So far back a marker that it has rolled past comes into sight again: it is seen from 500 to 100 mm before its post,
 and a base at 200 mm/s rolls on for half a second."""
+AS_ARRIVED_RAD = math.radians(15)
+"""Less than half of what lies between the lines of two bays."""
 
 
 class Moment(StrEnum):
     """The action under way, if a power cut then leaves doubt of its place; written down before it begins."""
 
     TURNING = "turning"
-    """At a post: it may look anywhere."""
+    """At a post, in a turn or back there after it had left: it looks as its base has counted since, else anywhere."""
     DOCKING = "docking"
     """Into its dock or out of it: it stands beside the end of the line, and may look anywhere."""
     LEAVING = "leaving"
@@ -65,7 +68,9 @@ def looks_as_arrived(campus: CampusMap, before: parts.Position, post: str, looks
     restart about the way it looks. Nothing is said of it where no corridor leads from the one post to the other."""
     previous = before.previous if before.post == post else before.post
     came_by = corridor_between(campus, post, previous) if previous else None
-    return came_by is None or (looks_rad is not None and not looks_otherwise(came_by, post, looks_rad))
+    if came_by is None:
+        return True
+    return looks_rad is not None and abs(wrapped(looks_rad - came_by.heading_arriving(post))) < AS_ARRIVED_RAD
 
 
 def may_look_back_mm(place: Place) -> float:

@@ -366,7 +366,8 @@ class MissionManager:
     def seen(self, post: str, moment: str | None = None, turn: TurnBegun | None = None) -> None:
         """The robot stands at a marker: remembered at once, since after a power cut nothing else tells where it is."""
         with self._store.transaction():
-            self.turns.keep(turn)
+            if moment:
+                self.turns.keep(turn)
             self.memory.see(post, self.utc(), moment=moment)
         self._changed()
 

@@ -17,8 +17,9 @@ pytestmark = [pytest.mark.system, pytest.mark.timeout(280)]
 WAY = ["queued", "assigned", "to_sender", "at_sender", "carrying", "at_recipient", "delivered"]
 TOLD_SENDER = ["accepted", "delivered", "robot_here", "robot_near"]
 TOLD_RECIPIENT = ["delivered", "on_its_way", "robot_here_for_you"]
-RECIPIENTS_BAY = builtin_map("test_track").track.post("post4_bay2").point
-POST4 = builtin_map("test_track").post("post4").point
+SENDERS_BAY, POST4, RECIPIENTS_BAY = (
+    builtin_map("test_track").track.post(place).point for place in ("post1_bay2", "post4", "post4_bay2")
+)
 NOTICED_S = LOOKS_AFTER_S + ANSWERS_WITHIN_S + 2.0
 """Of the machine's time: by then the service has given the silent connection up."""
 
@@ -62,6 +63,17 @@ def rig(tmp_path: Path) -> Iterator[Rig]:
 def test_a_letter_is_ordered_loaded_carried_and_received(rig: Rig) -> None:
     letter = Letter(rig)
     letter.load()
+    letter.assert_delivered_and_each_told_once(letter.receive())
+
+
+@pytest.mark.nightly
+def test_cut_off_as_it_sets_out_it_goes_on_when_the_network_is_back(rig: Rig) -> None:
+    letter = Letter(rig)
+    letter.load()
+    wait_for("the robot sets out", lambda: not rig.is_near(*SENDERS_BAY))
+    rig.wire.cut()
+    time.sleep(NOTICED_S)
+    rig.wire.mend()
     letter.assert_delivered_and_each_told_once(letter.receive())
 
 

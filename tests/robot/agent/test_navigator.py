@@ -230,10 +230,7 @@ def test_a_robot_that_turns_round_between_posts_comes_back_to_where_it_was(walk:
     walk.navigator.leave()
     walk.body.rolls(700.0)
     walk.look()
-    walk.navigator.begin_turn()
-    walk.body.turns(math.pi)
-    walk.look()
-    walk.navigator.turned()
+    walk.turns_round()
     assert (walk.navigator.towards, walk.navigator.came_from, walk.navigator.corridor) == ("post2", "post3", leg)
     assert walk.missions.held.grants == (leg,), "it is still in there"
     walk.body.rolls(690.0)

@@ -1,12 +1,15 @@
 """What the robot knows of its heading after a power cut in the middle of a turn."""
 
 import math
+from pathlib import Path
 
 import pytest
 
+from maps import read_map
 from protocol.parts import Leg
 from robot.mission.store import Store
 from tests.robot.agent.walk import Walk
+from tests.robot.fork import fork
 
 QUARTER_COUNTS = round(235.0 * math.pi / 4 / (72.0 * math.pi / 508.8))
 """Of each wheel in a quarter turn on the spot."""
@@ -81,10 +84,7 @@ def turned_back_from_post3(walk: Walk) -> None:
     walk.navigator.leave()
     walk.body.rolls(900.0)
     walk.look()
-    walk.navigator.begin_turn()
-    walk.body.turns(math.pi)
-    walk.look()
-    walk.navigator.turned()
+    walk.turns_round()
 
 
 def test_back_at_a_post_it_knows_after_a_power_cut_that_it_looks_as_it_came_back(walk: Walk, store: Store) -> None:
@@ -96,6 +96,30 @@ def test_back_at_a_post_it_knows_after_a_power_cut_that_it_looks_as_it_came_back
     again.look()
     again.navigator.destination = "post3"
     assert (again.navigator.way(), again.navigator.doubted) == ("behind", None), "from post1 it would lie to its left"
+
+
+def test_back_from_a_bay_it_does_not_take_itself_to_look_as_from_the_bay_beside_it(
+    tmp_path: Path, store: Store
+) -> None:
+    campus = read_map(fork(tmp_path, 32.0, -25.0)).track
+    walk = Walk(store, campus=campus)
+    walk.navigator.place("b_bay2", "b")
+    walk.drives_to("b")
+    walk.body.rolls(300.0)
+    walk.look()
+    walk.navigator.destination = "b_bay1"
+    walk.turns(str(walk.navigator.way()))
+    walk.navigator.leave()
+    walk.body.rolls(400.0)
+    walk.look()
+    walk.turns_round()
+    walk.body.rolls(400.0)
+    walk.look()
+    assert walk.navigator.at == "b"
+    again = Walk(store, campus=campus)
+    again.look()
+    again.navigator.destination = "a"
+    assert math.degrees(again.navigator.aslant_rad) == pytest.approx(-32.0, abs=1.0), "from its other bay: 25 degrees"
 
 
 def test_back_at_a_post_and_not_knowing_how_it_looks_it_does_not_know_after_a_power_cut(

@@ -1,5 +1,6 @@
 """A navigator that is led through the map by hand."""
 
+import math
 from datetime import UTC, datetime, timedelta
 
 from maps import CampusMap
@@ -45,6 +46,13 @@ class Walk:
         self.look()
         self.body.rolls(300.0)
         self.look()
+
+    def turns_round(self) -> None:
+        """Between two posts."""
+        self.navigator.begin_turn()
+        self.body.turns(math.pi)
+        self.look()
+        self.navigator.turned()
 
     def turns(self, way: str) -> None:
         self.body.turns(self.navigator.turn_rad(way))
