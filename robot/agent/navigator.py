@@ -305,8 +305,7 @@ class Navigator(Tracker):
     def begin_turn(self) -> None:
         """At a post: after a power cut in the middle of a turn it may look anywhere."""
         if isinstance(self._place, AtPost):
-            self._head_for(self._next_post())
-            self._note_turn()
+            self._head_for(self._next_post(), Moment.TURNING)
 
     def begin_docking(self) -> None:
         """Into the dock or out of it: in between it stands beside the line, and looks anywhere."""
@@ -318,9 +317,7 @@ class Navigator(Tracker):
         place = self._place
         if isinstance(place, Between):
             self._place = turned_round(self._after_a_miss(place), self._odometry.ahead_mm)
-            self._head_for(self._place.towards)
-            if self._place.blind:
-                self._note_moment(Moment.BLIND)
+            self._head_for(self._place.towards, Moment.BLIND if self._place.blind else None)
             return
         corridor = self._corridor_ahead()
         if corridor and place.here:
@@ -368,7 +365,7 @@ class Navigator(Tracker):
             if looks_rad is None or abs(wrapped(looks_rad - away_rad)) < STRAIGHT_RAD:
                 self._look_along(away_rad)
             self._place = AtPost(self.here, now_mm, now_mm)
-            self._note_turn()
+            self._head_for(self._next_post(), Moment.TURNING)
 
     def place(self, post: str, towards: str | None) -> None:
         """A person has put the robot down at a post, looking along a corridor. Raises UnknownPost, UnknownCorridor."""

@@ -13,7 +13,7 @@ from robot.localization.approach import is_aslant, post_ahead_mm
 from robot.localization.astray import FROM_MM, TO_MM, Compass, really_towards
 from robot.localization.bays import evidence_of, occupied
 from robot.localization.by_fixes import near_dock
-from robot.localization.counted_turn import CountedTurn
+from robot.localization.counted_turn import CountedTurn, Turned
 from robot.localization.directions import corridor_ahead, looks_otherwise, turn_towards_rad
 from robot.localization.docks import dock_post
 from robot.localization.expected import Expected, Foreign, agree, expected, hangs_beside_this_line, is_own
@@ -62,9 +62,10 @@ class Tracker:
         """The corridors that it has come through and not given back, since the service cannot hear of it."""
         self._duties = missions
         self._moment = Moment(missions.held.moment) if missions.held.moment else None
-        self._place, self._facing = remembered(campus, missions.held.position, self._moment)
-        kept = missions.turns.kept() if self._moment is Moment.TURNING else None
-        self._turning = CountedTurn(kept, shape, now)
+        turned = missions.turns.kept()
+        self._place, self._facing = remembered(campus, missions.held.position, self._moment, turned.back_from)
+        begun = turned.begun if self._moment is Moment.TURNING else None
+        self._turning = CountedTurn(begun, shape, now)
         self._odometry = Odometry()
         self._disturbed = self._set_out_disturbed = 0  # by searches and bumps, so far
         self._scale = WayScale()
@@ -291,17 +292,14 @@ class Tracker:
         self._moment = moment
         self._duties.note_moment(moment)
 
-    def _note_turn(self) -> None:
-        self._moment = Moment.TURNING
-        self._duties.note_moment(self._moment, self._turning.begun(self._looks_rad(self._odometry)))
-
     def _note_seen(self, post: str) -> None:
         """It stands at this post; what was under way, if anything, has ended where it should. One that has come back to
         it does not look as it did when it came there first: then the way it looks is kept as in a turn."""
         looks_rad = self._looks_rad(self._odometry)
         as_arrived = looks_as_arrived(self.campus, self._duties.held.position, post, looks_rad)
         self._moment = None if as_arrived else Moment.TURNING
-        self._duties.seen(post, self._moment, self._turning.begun(looks_rad))
+        begun = None if as_arrived else self._turning.begun(looks_rad)
+        self._duties.seen(post, self._moment, Turned(begun))
 
     def _check_way(self) -> None:
         """Check that it follows the line that it was going to."""
@@ -372,13 +370,13 @@ class Tracker:
         self._scale.set_out(place.at_mm if place.here not in self.unread else None, self._disturbed)
         corridor = self._corridor_ahead()
         self._place = set_out(place, corridor, self._counted_m(corridor.length_m) if corridor else 0.0)
-        self._head_for(self._place.towards)
-        if corridor is None:
-            self._note_moment(Moment.LEAVING)
+        self._head_for(self._place.towards, None if corridor else Moment.LEAVING)
 
-    def _head_for(self, towards: str | None) -> None:
-        self._moment = None
-        self._duties.heading_for(towards)
+    def _head_for(self, towards: str | None, moment: Moment | None = None) -> None:
+        self._moment, place = moment, self._place
+        back_from = place.far if isinstance(place, Between) and place.turned_round else None
+        begun = self._turning.begun(self._looks_rad(self._odometry)) if moment is Moment.TURNING else None
+        self._duties.heading_for(towards, moment, Turned(begun, back_from))
 
     def _corridor_ahead(self) -> Corridor | None:
         """The one that the robot looks along."""

@@ -30,6 +30,19 @@ class TurnBegun:
         return wrapped(self.looks_rad + turned.heading_rad) if is_of_this_turn else None
 
 
+@dataclass(frozen=True, slots=True)
+class Turned:
+    """What a robot keeps of its turns through a restart."""
+
+    begun: TurnBegun | None = None
+    """At a post; None: none is under way, or the way it looked was not known."""
+    back_from: str | None = None
+    """The far end of the corridor in which it has turned round; None: it goes the way that it was granted."""
+
+
+NOT_TURNED: Final = Turned()
+
+
 class CountedTurn:
     """The newest turn that was written down, and the base that counts it. `not_yet_known`: it was under way when the
     robot was switched off, and the base has not been heard since."""

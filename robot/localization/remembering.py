@@ -34,9 +34,11 @@ class Moment(StrEnum):
     """In a person's hands, until a marker or a dock has told where it is."""
 
 
-def remembered(campus: CampusMap, position: parts.Position, moment: Moment | None) -> tuple[Place, Facing | None]:
+def remembered(
+    campus: CampusMap, position: parts.Position, moment: Moment | None, turned_back_from: str | None
+) -> tuple[Place, Facing | None]:
     """Where the robot was when it was switched off, and how it looked. `towards` was written down before it left or
-    turned."""
+    turned. `turned_back_from`: the far end of the corridor in which it turned round last."""
     post, previous, towards = position.post, position.previous, position.towards
     if post is None or post not in campus.posts:
         return Unknown(lifted=moment is Moment.LIFTED), None
@@ -48,18 +50,20 @@ def remembered(campus: CampusMap, position: parts.Position, moment: Moment | Non
     if moment in (Moment.TURNING, Moment.DOCKING):
         return AtPost(post, 0.0, 0.0, came_by), None
     if towards:
-        return _on_its_way(campus, post, towards, moment)
+        return _on_its_way(campus, post, towards, turned_back_from if towards == post else towards, moment)
     facing_rad = came_by.heading_arriving(post) if came_by else None
     return AtPost(post, 0.0, 0.0, came_by), Facing.of(facing_rad, Odometry())
 
 
-def _on_its_way(campus: CampusMap, post: str, towards: str, moment: Moment | None) -> tuple[Place, Facing | None]:
-    """`towards` may be the same post: it had turned round."""
-    corridor, blind = corridor_between(campus, post, towards), moment is Moment.BLIND
+def _on_its_way(
+    campus: CampusMap, post: str, towards: str, far: str | None, moment: Moment | None
+) -> tuple[Place, Facing | None]:
+    """In the corridor from `post` to `far`. `towards` is `post` itself where it had turned round."""
+    corridor, blind = corridor_between(campus, post, far) if far else None, moment is Moment.BLIND
     doubted = blind or moment is Moment.NEARING
     if corridor is None:
         return Leaving(post, doubted=doubted, blind=blind), None
-    facing_rad = corridor.heading_leaving(post)
+    facing_rad = corridor.heading_arriving(post) if towards == post else corridor.heading_leaving(post)
     return Between(corridor, post, towards, doubted=doubted, blind=blind), Facing.of(facing_rad, Odometry())
 
 

@@ -293,12 +293,12 @@ class Memory:
             self._write("moment", _WORD, moment)
             return position
 
-    def head(self, towards: str | None) -> Position:
+    def head(self, towards: str | None, moment: str | None = None) -> Position:
         """The robot is on its way to this post next, or to none."""
         with self._store.transaction():
             position = self.position().model_copy(update={"towards": towards})
             self._write("position", _POSITION, position)
-            self._write("moment", _WORD, None)
+            self._write("moment", _WORD, moment)
             return position
 
     def moment(self) -> str | None:

@@ -38,7 +38,7 @@ from protocol.to_server import (
     Where,
 )
 from robot.core.errors import RobotError
-from robot.localization.counted_turn import TurnBegun
+from robot.localization.counted_turn import NOT_TURNED, Turned
 from robot.mission.custody import Custody, Proof, Sign, opening
 from robot.mission.memory import Memory
 from robot.mission.occupancy import OccupancyReports
@@ -363,11 +363,10 @@ class MissionManager:
 
     # Where it was seen.
 
-    def seen(self, post: str, moment: str | None = None, turn: TurnBegun | None = None) -> None:
+    def seen(self, post: str, moment: str | None = None, turned: Turned = NOT_TURNED) -> None:
         """The robot stands at a marker: remembered at once, since after a power cut nothing else tells where it is."""
         with self._store.transaction():
-            if moment:
-                self.turns.keep(turn)
+            self.turns.keep(turned)
             self.memory.see(post, self.utc(), moment=moment)
         self._changed()
 
@@ -386,13 +385,13 @@ class MissionManager:
         now = self.utc()
         self.memory.keep_closed({name: now - timedelta(seconds=age_s) for name, age_s in ages_s.items()})
 
-    def heading_for(self, towards: str | None) -> None:
-        self.memory.head(towards)
+    def heading_for(self, towards: str | None, moment: str | None = None, turned: Turned = NOT_TURNED) -> None:
+        with self._store.transaction():
+            self.turns.keep(turned)
+            self.memory.head(towards, moment)
         self._changed()
 
-    def note_moment(self, moment: str, turn: TurnBegun | None = None) -> None:
+    def note_moment(self, moment: str) -> None:
         """Remembered at once: a power cut now leaves doubt of its place."""
-        with self._store.transaction():
-            self.turns.keep(turn)
-            self.memory.note_moment(moment)
+        self.memory.note_moment(moment)
         self._changed()

@@ -122,20 +122,54 @@ def test_back_from_a_bay_it_does_not_take_itself_to_look_as_from_the_bay_beside_
     assert math.degrees(again.navigator.aslant_rad) == pytest.approx(-32.0, abs=1.0), "from its other bay: 25 degrees"
 
 
+def comes_back_to(walk: Walk, post: str) -> None:
+    walk.body.rolls(600.0)
+    walk.look()
+    walk.body.sees(post)
+    walk.look()
+    walk.body.rolls(300.0)
+    walk.look()
+
+
+@pytest.mark.parametrize("killed", ["half way back", "before the crossing"])
+def test_killed_on_its_way_back_it_knows_along_which_line_it_goes(walk: Walk, store: Store, killed: str) -> None:
+    turned_back_from_post3(walk)
+    walk.look()
+    if killed == "before the crossing":
+        walk.body.rolls(600.0)
+        walk.look()
+        walk.body.sees("post2")
+        walk.look()
+    again = Walk(store)
+    again.navigator.destination = "post3"
+    again.look()
+    assert (again.navigator.here, again.navigator.towards) == ("post2", "post2")
+    comes_back_to(again, "post2")
+    assert (again.navigator.at, again.navigator.way(), again.navigator.doubted) == ("post2", "behind", None)
+
+
+def test_killed_once_it_has_turned_round_twice_it_goes_where_it_was_going(walk: Walk, store: Store) -> None:
+    turned_back_from_post3(walk)
+    walk.look()
+    walk.turns_round()
+    again = Walk(store)
+    again.look()
+    assert (again.navigator.here, again.navigator.towards) == ("post2", "post3")
+
+
 def test_back_at_a_post_and_not_knowing_how_it_looks_it_does_not_know_after_a_power_cut(
     walk: Walk, store: Store
 ) -> None:
-    """Killed on its way back, it has forgotten along which line that was."""
-    turned_back_from_post3(walk)
-    walk.look()
+    """It went into a line that it did not know."""
+    killed_in_a_turn(walk, store, RESET)
     again = Walk(store)
     again.look()
-    again.body.rolls(600.0)
+    again.navigator.leave()
+    again.body.rolls(700.0)
     again.look()
-    again.body.sees("post2")
+    again = Walk(store)
     again.look()
-    again.body.rolls(300.0)
-    again.look()
+    comes_back_to(again, "post2")
     assert (again.navigator.at, again.navigator.looks_anywhere) == ("post2", True)
     once_more = Walk(store)
     once_more.look()
