@@ -56,6 +56,7 @@ def test_the_judge_counts_how_long_a_robot_is_on_a_crossing():
 
 
 @pytest.mark.nightly
+@pytest.mark.timeout(600)
 def test_two_robots_with_the_whole_service_deliver_and_touch_nothing():
     figures = Run(Fleet(str(MAP), robots=2, scale=1.0, waiting=3), minutes=5, seed=1).carry_out()
     assert (figures["touches"], figures["ungranted"], figures["astray"]) == (0, [], [])
@@ -87,6 +88,16 @@ def test_robots_that_are_carried_away_or_found_dead_go_on_among_closures_and_tou
     assert figures["astray"] == []
     assert min(figures["befallen"][what] for what in ("kill", "cut", "lift", "death", "closure")) >= 1
     assert figures["handed_over"] >= 3
+
+
+@pytest.mark.nightly
+@pytest.mark.timeout(600)
+def test_a_run_ends_when_what_befell_its_robots_is_over_and_they_have_told_all():
+    rates = Rates(cut_s=20, die_s=600, kill_s=300)
+    figures = Run(Fleet(str(STAR), robots=3, scale=1.0, waiting=6, rates=rates), minutes=5, seed=1).carry_out()
+    assert figures["befallen"]["cut"] >= 5, "and one just before the end"
+    assert (figures["out_of_reach"], figures["astray"]) == ([], [])
+    assert figures["alarms"]["emergency_stop"] == figures["befallen"]["death"] >= 1, "each that lay dead was found"
 
 
 @pytest.mark.nightly

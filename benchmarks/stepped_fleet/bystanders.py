@@ -25,7 +25,7 @@ UNTOLD: Final = {OrderState.TO_SENDER: Purpose.LOAD, OrderState.CARRYING: Purpos
 
 @dataclass
 class Bystanders:
-    """`tick` once a second."""
+    """`tick` once a second. After `leave` they do not come any more."""
 
     people: People
     track: CampusMap
@@ -33,10 +33,16 @@ class Bystanders:
     handed_over: int = 0
     _coming: dict[tuple[str, str], float] = field(default_factory=dict)
     _showing: dict[str, tuple[str, Purpose]] = field(default_factory=dict)
+    _have_left: bool = False
+
+    def leave(self) -> None:
+        self._have_left = True
 
     async def tick(self, robots: list[SteppedRobot], now: float) -> None:
         for robot in robots:
             self._listen(robot)
+        if self._have_left:
+            return
         by_name = {robot.name: robot for robot in robots if robot.is_on}
         for order in await self._at_stops():
             robot = by_name.get(order.robot or "")

@@ -4,6 +4,7 @@ import asyncio
 import math
 from collections import Counter
 from collections.abc import Awaitable, Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from random import Random
 from typing import Final
@@ -46,7 +47,8 @@ NONE: Final = Rates()
 
 @dataclass
 class Fates:
-    """`befallen`: how often what. One thing at a time befalls a robot."""
+    """`befallen`: how often what. One thing at a time befalls a robot. After `end` nothing does any more, and who lies
+    dead is found."""
 
     rates: Rates
     robots: list[SteppedRobot]
@@ -55,6 +57,7 @@ class Fates:
     seed: int
     befallen: Counter[str]
     _busy: dict[str, asyncio.Lock] = field(default_factory=dict)
+    _ended: asyncio.Event = field(default_factory=asyncio.Event)
 
     def tasks(self) -> Iterator[asyncio.Task[None]]:
         rates = self.rates
@@ -73,12 +76,21 @@ class Fates:
         if rates.close_s:
             yield asyncio.create_task(self._close_corridors())
 
+    def end(self) -> None:
+        self._ended.set()
+
+    async def _goes_on_for(self, for_s: float) -> bool:
+        """Wait so long; False: the end came before."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(for_s):
+                await self._ended.wait()
+        return not self._ended.is_set()
+
     async def _now_and_then(self, one: SteppedRobot, kind: str, every_s: float, befalls: Befalls) -> None:
         rng = Random(f"{self.seed} {one.name} {kind}")
-        while True:
-            await asyncio.sleep(rng.expovariate(1 / every_s))
+        while await self._goes_on_for(rng.expovariate(1 / every_s)):
             async with self._busy.setdefault(one.name, asyncio.Lock()):
-                if one.is_on:
+                if one.is_on and not self._ended.is_set():
                     await befalls(one, rng)
 
     async def _is_killed(self, one: SteppedRobot, _: Random) -> None:
@@ -119,7 +131,7 @@ class Fates:
     async def _dies(self, one: SteppedRobot, rng: Random) -> None:
         self.befallen["death"] += 1
         one.kill()
-        await asyncio.sleep(rng.uniform(*FOUND_AFTER_S))
+        await self._goes_on_for(rng.uniform(*FOUND_AFTER_S))
         one.body.place(start_pose(self.campus, one.start))
         await self.people.take_out(one.name)
         one.switch_on()
@@ -129,25 +141,24 @@ class Fates:
 
     async def _close_corridors(self) -> None:
         rng = Random(f"{self.seed} closures")
-        while True:
-            await asyncio.sleep(rng.expovariate(1 / self.rates.close_s))
+        while await self._goes_on_for(rng.expovariate(1 / self.rates.close_s)):
             corridor = rng.choice(self.campus.corridors).name
             self.befallen["closure"] += 1
             await self.people.close(corridor)
-            await asyncio.sleep(rng.uniform(*CLOSED_S))
+            await self._goes_on_for(rng.uniform(*CLOSED_S))
             await self.people.open_again(corridor)
 
     async def _dies_turning(self, one: SteppedRobot) -> None:
         rng = Random(f"{self.seed} {one.name} turns")
         turned = False
-        while True:
+        while not self._ended.is_set():
             await asyncio.sleep(LOOK_S)
             turned, turned_before = one.turns_on_a_crossing, turned
             if turned_before or not turned or rng.random() >= self.rates.turns_killed:
                 continue
             await asyncio.sleep(rng.uniform(*DIES_AFTER_S))
             async with self._busy.setdefault(one.name, asyncio.Lock()):
-                if one.turns_on_a_crossing:
+                if one.turns_on_a_crossing and not self._ended.is_set():
                     self.befallen["kill in a turn"] += 1
                     self.befallen["kill in a turn beside others"] += self._others_near(one)
                     await self._kill(one)

@@ -32,6 +32,8 @@ from protocol.ids import ids_from
 from robot.simulated import World
 
 STEP_S: Final = 0.02
+QUIET_S: Final = 180.0
+"""At the end, when nothing befalls a robot any more: longer than a network is cut, so that all it has to say comes."""
 LOOK_EVERY: Final = 5
 """Steps between two looks of the judge: a tenth of a second."""
 
@@ -83,7 +85,10 @@ class Run:
         silences = [keep_silent(one, campus.track, self.befallen) for one in self.robots]
         fates = Fates(self.fleet.rates, self.robots, people, campus, self.seed, self.befallen)
         tasks = [*(asyncio.create_task(one) for one in (ordering, *silences)), *fates.tasks()]
-        await self._step(clock, service, (floor, paces), bystanders, tasks)
+        await self._step(60.0 * self.minutes, clock, service, (floor, paces), bystanders, tasks)
+        fates.end()
+        bystanders.leave()
+        await self._step(QUIET_S, clock, service, (floor, paces), bystanders, tasks)
         found = await self._figures(service, people, floor, bystanders, process_time() - begun_s)
         found["takes"] = paces.figures()
         for task in tasks:
@@ -112,6 +117,7 @@ class Run:
 
     async def _step(
         self,
+        for_s: float,
         clock: LoopClock,
         service: Service,
         judges: tuple[TrueFloor, Paces],
@@ -119,8 +125,7 @@ class Run:
         tasks: list[asyncio.Task[None]],
     ) -> None:
         floor, paces = judges
-        steps = round(self.minutes * 60 / STEP_S)
-        for step in range(steps):
+        for step in range(round(for_s / STEP_S)):
             await asyncio.sleep(STEP_S)
             for one in self.robots:
                 one.tick_until(clock.now())
@@ -143,9 +148,9 @@ class Run:
         states = await people.states()
         async with service.parts.database.reading() as session:
             alarms = Counter(alarm.name for alarm in (await session.exec(select(Alarm))).all())
-        judge = floor.collisions
+        judge, out_of_reach = floor.collisions, frozenset(one.name for one in self.robots if not one.network.is_up)
         return {
-            "robot_hours": self.fleet.robots * self.minutes / 60,
+            "robot_hours": round(self.fleet.robots * (60.0 * self.minutes + QUIET_S) / 3600.0, 2),
             "overlaps": len(judge.overlaps),
             "touches": judge.touches,
             "collisions": [str(one) for one in judge.found],
@@ -154,7 +159,8 @@ class Run:
             "driven_m": round(floor.driven_m),
             "handed_over": bystanders.handed_over,
             "orders": dict(states),
-            "astray": await people.astray(frozenset()),
+            "astray": await people.astray(out_of_reach),
+            "out_of_reach": sorted(out_of_reach),
             "befallen": dict(self.befallen),
             "alarms": dict(alarms),
             "processor_s": round(took_s),
