@@ -1,15 +1,19 @@
 """One robot with the orders that could come in turn once it has done what it has: what each place would cost.
 
-Ways are as long as on empty corridors. What a robot has is done when the schedule says.
+Ways are as long as on empty corridors. What a robot has is done when the schedule says. What its charge does not last
+for comes after a charge.
 """
 
 from collections.abc import Sequence
 from math import inf
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from fleet.assignment.cost import latency_s
 from fleet.assignment.problem import AssignmentProblem, OpenOrder, Route
-from fleet.assignment.routes import NO_FIT, Fit, leaves_s, line, orders_of, room, with_order
+from fleet.assignment.routes import NO_FIT, Fit, leaves_s, line, room, with_order
+
+CHARGES_S: Final = 3600.0
+"""Assumed, for the way to a dock and the charge between two orders; with that it does all that is looked at here."""
 
 
 class Waiting(NamedTuple):
@@ -32,8 +36,9 @@ def waiting(problem: AssignmentProblem, order: OpenOrder) -> Waiting:
     return Waiting(order, load.post, give.post, soonest_s, takes_s, way_s, waited_s)
 
 
-_At = tuple[float, int, float]
-"""Behind some of the turns: when and where, and what they have cost."""
+_At = tuple[float, int, float, float]
+"""Behind some of the turns: when and where, what they have cost, and for how many seconds of driving the charge
+lasts."""
 Place = Fit | int
 """Between the stops of the route, or before so many of the turns."""
 
@@ -65,9 +70,13 @@ class Turns:
         problem, robot = self._problem, self._robot
         self.route, self.room = route, room(problem, self.name, route)
         self.route_s, at_s = self._route_s(route)
-        self._begins = (at_s, route[-1].goal.post if route else robot.start.post, 0.0)
-        self._spare_s = robot.drives_s - problem.drive_s(robot.start.post, route)
+        self._begins = self._behind(route, at_s)
         self._goes_along = line(problem, self.name, route) if self.room > 0 and route and robot.capacity > 1 else None
+
+    def _behind(self, route: Route, at_s: float) -> _At:
+        start = self._robot.start.post
+        spare_s = self._robot.drives_s - self._problem.drive_s(start, route)
+        return at_s, route[-1].goal.post if route else start, 0.0, spare_s
 
     def done_s(self, route: Route) -> float:
         """When it has done these stops, in seconds from now."""
@@ -92,10 +101,13 @@ class Turns:
             self._at.append(self._after(self._at[-1], (one,)))
 
     def _after(self, at: _At, turns: Sequence[Waiting]) -> _At:
-        at_s, post, cost_s = at
-        late, late_after_s, driving, shortest_s = *self._weights, self._shortest_s
+        at_s, post, cost_s, spare_s = at
+        late, late_after_s, driving, shortest_s, home = *self._weights, self._shortest_s, self._robot.home
         for order, load, give, soonest_s, takes_s, way_s, waited_s in turns:
             there_s = shortest_s[post][load]
+            spare_s -= there_s + way_s
+            if spare_s < (0.0 if home is None else shortest_s[give][home]):
+                at_s, spare_s = at_s + CHARGES_S, inf
             at_s += there_s
             if at_s < soonest_s:  # noqa: PLR1730  # a call takes longer than all else here
                 at_s = soonest_s
@@ -105,7 +117,7 @@ class Turns:
                 latency_s += late * (latency_s - late_after_s)
             cost_s += order.weight * latency_s + driving * (there_s + way_s)
             post = give
-        return at_s, post, cost_s
+        return at_s, post, cost_s, spare_s
 
     # What it costs.
 
@@ -114,8 +126,8 @@ class Turns:
         return self.route_s + self._at[-1][2]
 
     def with_turns_s(self, behind: Sequence[Waiting]) -> float:
-        """The cost, if these were in turn; without end if the charge does not last for them."""
-        return self.route_s + self._after(self._begins, behind)[2] if self._lasts(behind) else inf
+        """The cost, if these were in turn."""
+        return self.route_s + self._after(self._begins, behind)[2]
 
     def best_place(self, one: Waiting) -> tuple[float, int]:
         """Where the cost rises least, and by how much; of equal places the last."""
@@ -123,9 +135,8 @@ class Turns:
             return inf, 0
         best_s, best, behind = inf, 0, self.behind
         for place in range(len(behind), -1, -1):
-            later = (one, *behind[place:])
-            cost_s = self._after(self._at[place], later)[2]
-            if cost_s < best_s and (self._spare_s == inf or self._lasts((*behind[:place], *later))):
+            cost_s = self._after(self._at[place], (one, *behind[place:]))[2]
+            if cost_s < best_s:
                 best_s, best = cost_s, place
         return best_s - self._at[-1][2], best
 
@@ -138,19 +149,8 @@ class Turns:
             return inf, NO_FIT
         route = with_order(self.route, one.order, fit)
         route_s, at_s = self._route_s(route)
-        behind_s = self._after((at_s, route[-1].goal.post, 0.0), self.behind)[2]
+        behind_s = self._after(self._behind(route, at_s), self.behind)[2]
         return route_s + behind_s - self.cost_s, fit
-
-    def _lasts(self, behind: Sequence[Waiting]) -> bool:
-        """The charge, for all that and the way home."""
-        spare_s = self._spare_s
-        if spare_s == inf or not behind or (self._robot.goes_beyond and not orders_of(self.route) and len(behind) == 1):
-            return True
-        post = self._begins[1]
-        for one in behind:
-            spare_s -= self._shortest_s[post][one.load] + one.way_s
-            post = one.give
-        return spare_s >= (0.0 if self._robot.home is None else self._shortest_s[post][self._robot.home])
 
     # What changes.
 
@@ -158,11 +158,15 @@ class Turns:
         if isinstance(place, Fit):
             self._takes(with_order(self.route, one.order, place))
             self._line(self.behind)
-        elif self._robot.capacity > 1 and self.room > 0 and not self.route:
+        elif self._robot.capacity > 1 and not self.route and self._can_take(one):
             self._takes(one.order.stops)
             self._line(self.behind)
         else:
             self._line((*self.behind[:place], one, *self.behind[place:]))
+
+    def _can_take(self, one: Waiting) -> bool:
+        """Now, without a charge."""
+        return self.room > 0 and line(self._problem, self.name, self.route).best_fit(one.order) is not NO_FIT
 
     def set_behind(self, behind: Sequence[Waiting]) -> None:
         self._line(behind)

@@ -101,3 +101,12 @@ def test_an_order_that_a_robot_had_is_never_left_without_one() -> None:
         first = decided(problem_of(street(20), robots, [BRINGS, had, *near]))
         after = improved(first, Random(seed), rounds(60))
         assert had.id in after.robot_of()
+
+
+def test_what_the_charge_does_not_last_for_comes_after_a_charge_or_with_a_robot_that_needs_none() -> None:
+    near, far = order(3, 1, 2), order(4, 8, 9)
+    after = decided(problem_of(street(20), {"r0": robot(0, drives_s=500.0)}, [near, far]))
+    assert (after.robot_of(), after.outlook.comes) == ({near.id: "r0"}, {far.id: "r0"})
+    robots = {"r0": robot(0, drives_s=500.0), "busy": robot(19, route=BRINGS.stops[1:], begun=1)}
+    after = decided(problem_of(street(20), robots, [BRINGS, near, far]))
+    assert after.outlook.comes == {far.id: "busy"}, "though the way is longer"
