@@ -18,10 +18,11 @@
 +!go_to(Post)
   <- set_destination(Post);
      !permission(Post);
-     !leave(Post);
-     !follow;
-     !tell_passed(Post);
+     !set_out(Post);
      !go_to(Post).
+
++!set_out(Post) : at(Post).   // others had to pass, and it went into a bay of that very post
++!set_out(Post) <- !leave(Post); !follow; !tell_passed(Post).
 
 // Switched off between its dock and its post, it stands beside the line. The dock's own signals lead it in; without them it
 // looks for the line.

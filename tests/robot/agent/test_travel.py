@@ -139,3 +139,18 @@ def test_sent_aside_by_the_service_it_lets_others_pass_and_then_goes_on_by_its_o
     stage.does("report(passed,s2)", "set_destination(post4)", "claim(post4)")
     stage.expect("follow_line")
     assert stage.failures == []
+
+
+def test_sent_into_another_bay_of_the_post_where_it_was_going_it_stays_there() -> None:
+    stage = Stage(*CARRYING, "crossing(post4)", "direction(post4,left)")
+    stage.does("report(departed,s2)", "set_destination(post4)")
+    stage.expect("claim(post4)")
+    stage.perceives("detour(post4_bay2)")
+    stage.succeeds("claim(post4)")
+    stage.does("set_destination(post4_bay2)", "claim(post4_bay2)")
+    stage.expect("follow_line")
+    stage.perceives(without=("detour(post4_bay2)", "crossing(post4)"))
+    stage.reaches("post4_bay2", "at(post4)", "direction(post4,arrived)")
+    stage.does("set_destination(post4)", "claim(post4)", "report(arrived,s2)")
+    stage.expect("wait_handover(receive,o1,s2,600)")
+    assert stage.done.count("follow_line") == 1 and stage.failures == []
