@@ -37,10 +37,10 @@ class VroomOfAll(PlansInRounds):
         for name, order in next_orders(tidy, waiting).items():
             if room(tidy, name, routes[name]) > 0:
                 routes[name] = (*routes[name], *order.stops)
-        timed = time_first(tidy, routes, rng)
+        outlook = look_ahead(tidy, routes, ())
+        timed = time_first(tidy, routes, rng, outlook.weights)
         if timed is None:
             return None
-        outlook = look_ahead(tidy, routes, ())
         return Decision(tidy, timed, outlook, outlook.cost_of(timed.schedule), tuple(one.id for one in waiting))
 
     async def improved(self, decision: Decision, budget_s: float) -> Decision | None:

@@ -8,7 +8,7 @@ from fleet.assignment.deciding import Decision
 from fleet.assignment.problem import AssignmentProblem, Kept, OpenOrder, RobotAtWork, Route, Rules, Stop
 from fleet.schedule.controller import TrafficController
 from fleet.schedule.journey import Goal
-from fleet.schedule.planning import Schedule
+from fleet.schedule.planning import Schedule, cost_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,9 +41,10 @@ def problem_of(
         at_work[name] = RobotAtWork(
             task.start, task.home, able.capacity, route, able.begun, able.accepts, able.drives_s, able.goes_beyond
         )
-    cost_s = sum(journeys[name].done_s for name, task in tasks.items() if task.goals)
     first_done = tuple(sorted(tasks, key=lambda name: journeys[name].done_s))
-    kept = Kept({name: task.goals for name, task in tasks.items()}, Schedule(journeys, cost_s, first_done))
+    kept = Kept(
+        {name: task.goals for name, task in tasks.items()}, Schedule(journeys, cost_s(tasks, journeys), first_done)
+    )
     return AssignmentProblem(now_s, traffic.network, at_work, orders, kept, rules or Rules())
 
 

@@ -49,7 +49,7 @@ def decide(problem: AssignmentProblem, rng: Random | None = None) -> Decision | 
     left = waiting if first == before else waiting_orders(tidy, first)
     looked_at = candidates(tidy, first, left)
     outlook = look_ahead(tidy, first, looked_at)
-    timed = time_first(tidy, outlook.routes, rng or Random(0))
+    timed = time_first(tidy, outlook.routes, rng or Random(0), outlook.weights)
     if timed is None:
         return None
     cost_s = outlook.cost_of(timed.schedule)

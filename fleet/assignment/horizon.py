@@ -32,12 +32,14 @@ BLURS_S: Final = (60.0, 300.0, 900.0)
 
 class Outlook(NamedTuple):
     """`routes`: what robots have and are given now. `cost_s`: of everything looked at, on empty corridors; `done_s`:
-    when robots that have something to do have done it there, added up. `comes`: the robot that each order waits for."""
+    when robots that have something to do have done it there, added up, each with its weight. `comes`: the robot that
+    each order waits for. `weights`: by robot, what it costs if that is done a second later."""
 
     routes: dict[str, Route]
     cost_s: float
     done_s: float
     comes: Mapping[str, str]
+    weights: Mapping[str, float]
 
     def cost_of(self, schedule: Schedule) -> float:
         """Return the cost with this schedule of the routes, in which robots wait for each other."""
@@ -61,6 +63,7 @@ def look_ahead(
     horizon = _Horizon(problem, _looked_at(problem, all_turns), noise)
     left = horizon.give([waiting(problem, order) for order in orders])
     horizon.improve()
+    weights = {name: turns.weight for name, turns in all_turns.items()}
     given = {name: turns.given_now() for name, turns in all_turns.items()}
     placed = {stop.order for route in given.values() for stop in route}
     for order, name in (had or {}).items():
@@ -71,8 +74,9 @@ def look_ahead(
     return Outlook(
         given,
         sum(turns.cost_s for turns in all_turns.values()) + sum(_not_soon_s(problem, one) for one in left),
-        sum(problem.now_s + all_turns[name].done_s(route) for name, route in given.items() if route),
+        sum(weights[name] * (problem.now_s + all_turns[name].done_s(route)) for name, route in given.items() if route),
         {order: name for order, name in behind if order not in placed},
+        weights,
     )
 
 

@@ -130,7 +130,7 @@ class _Search:
     def _timed(self, outlook: Outlook, worth_s: float) -> Timed | None:
         """The best schedule for these routes, if it makes the whole cheaper."""
         problem, kept, routes = self._problem, self._best.timed, outlook.routes
-        tasks = tasks_of(problem, routes)
+        tasks = tasks_of(problem, routes, outlook.weights)
         within_s = outlook.allows(self._best.cost_s - worth_s - SLACK_S)
         found: Schedule | None = None
         for order in self._orders([name for name in sorted(tasks) if tasks[name].goals != kept.tasks[name].goals]):

@@ -69,8 +69,8 @@ class RobotAtWork:
     drives_s: float = inf
     goes_beyond: bool = False
 
-    def task(self, route: Route) -> Task:
-        return Task(self.start, tuple(stop.goal for stop in route), self.home)
+    def task(self, route: Route, weight: float = 1.0) -> Task:
+        return Task(self.start, tuple(stop.goal for stop in route), self.home, weight)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,15 +1,18 @@
 """From the stops of all robots to a schedule that serves them, looked at independently before it counts."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from random import Random
 
 from fleet.assignment.cost import SLACK_S
 from fleet.assignment.problem import AssignmentProblem, Kept, Routes
 from fleet.schedule.journey import Journey, Task
-from fleet.schedule.planning import Insertion, Schedule, Tasks, first_plan, plan
+from fleet.schedule.planning import Insertion, Schedule, Tasks, cost_s, first_plan, plan
 from fleet.schedule.validation import problems
+
+Weights = Mapping[str, float]
+"""By robot, what its task weighs; 1.0 where nothing is said."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,8 +26,8 @@ class Timed:
     refused: frozenset[str] = frozenset()
 
 
-def tasks_of(problem: AssignmentProblem, routes: Routes) -> dict[str, Task]:
-    return {name: robot.task(routes[name]) for name, robot in problem.robots.items()}
+def tasks_of(problem: AssignmentProblem, routes: Routes, weights: Weights) -> dict[str, Task]:
+    return {name: robot.task(routes[name], weights.get(name, 1.0)) for name, robot in problem.robots.items()}
 
 
 def changed(tasks: Tasks, kept: Kept) -> list[str]:
@@ -33,17 +36,17 @@ def changed(tasks: Tasks, kept: Kept) -> list[str]:
     return sorted(name for name, task in tasks.items() if name not in there or kept.goals.get(name) != task.goals)
 
 
-def time_first(problem: AssignmentProblem, routes: Routes, rng: Random) -> Timed | None:
+def time_first(problem: AssignmentProblem, routes: Routes, rng: Random, weights: Weights) -> Timed | None:
     """The first schedule for these routes that is found: what is kept stays, and new work is planned round it.
 
     None only if nothing is kept, or if that is void, and not everybody can come home either.
     """
-    tasks = tasks_of(problem, routes)
+    tasks = tasks_of(problem, routes, weights)
     if problem.kept is not None:
         schedule = _round_what_is_kept(problem, tasks, problem.kept)
         if schedule is not None:
             return Timed(routes, tasks, schedule)
-        timed = _one_by_one(problem, routes, problem.kept)
+        timed = _one_by_one(problem, tasks, routes, problem.kept)
         if timed is not None:
             return timed
     anew = sound(problem, tasks, first_plan(problem.network, tasks, rng))
@@ -65,7 +68,7 @@ def _round_what_is_kept(problem: AssignmentProblem, tasks: Tasks, kept: Kept) ->
 def _promised_s(problem: AssignmentProblem, tasks: Tasks, kept: Kept) -> Mapping[str, float]:
     """Return the times that the kept schedule promises to overdue orders."""
     there = tasks.keys() & kept.schedule.journeys.keys()
-    served = {name: Task(tasks[name].start, kept.goals.get(name, ()), tasks[name].home) for name in there}
+    served = {name: replace(tasks[name], goals=kept.goals.get(name, ())) for name in there}
     return overdue_s(problem, served, kept.schedule)
 
 
@@ -74,11 +77,10 @@ def keeps_promises(promised_s: Mapping[str, float], now_s: Mapping[str, float]) 
     return all(now_s[order] <= at_s + SLACK_S for order, at_s in promised_s.items() if order in now_s)
 
 
-def _one_by_one(problem: AssignmentProblem, routes: Routes, kept: Kept) -> Timed | None:
+def _one_by_one(problem: AssignmentProblem, new: Tasks, routes: Routes, kept: Kept) -> Timed | None:
     """Each robot's new work behind everything else, where it can always be put, unless what it has before it is overdue
     and would come later by that."""
-    new = tasks_of(problem, routes)
-    tasks = {name: Task(task.start, kept.goals.get(name, ()), task.home) for name, task in new.items()}
+    tasks = {name: replace(task, goals=kept.goals.get(name, ())) for name, task in new.items()}
     schedule = sound(problem, tasks, of_robots(kept.schedule, tasks))
     if schedule is None:
         return None
@@ -107,8 +109,7 @@ def of_robots(schedule: Schedule, tasks: Tasks) -> Schedule | None:
     if tasks.keys() - schedule.journeys.keys():
         return None
     journeys = {name: schedule.journeys[name] for name in tasks}
-    cost_s = sum(journeys[name].done_s for name, task in tasks.items() if task.goals)
-    return Schedule(journeys, cost_s, in_order(schedule.order, tasks))
+    return Schedule(journeys, cost_s(tasks, journeys), in_order(schedule.order, tasks))
 
 
 def in_order(order: Sequence[str], tasks: Iterable[str], last: Sequence[str] = ()) -> tuple[str, ...]:

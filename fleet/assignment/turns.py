@@ -4,11 +4,11 @@ Ways are as long as on empty corridors. What a robot has is done when the schedu
 for comes after a charge.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import inf
 from typing import Final, NamedTuple
 
-from fleet.assignment.cost import latency_s
+from fleet.assignment.cost import latency_s, later_by_a_second_s
 from fleet.assignment.problem import AssignmentProblem, OpenOrder, Route
 from fleet.assignment.routes import NO_FIT, Fit, leaves_s, line, room, with_order
 
@@ -88,11 +88,15 @@ class Turns:
         """What these stops cost, and when they are done."""
         problem, leaves = self._problem, leaves_s(self._problem, self.name, route)
         cost_s = problem.rules.driving * problem.drive_s(self._robot.start.post, route)
-        for stop, at_s in zip(route, leaves[1:], strict=True):
-            if stop.change < 0 and stop.order in problem.orders:
-                order = problem.orders[stop.order]
-                cost_s += latency_s(problem.rules, order.weight, at_s + self._late_s + problem.now_s - order.since_s)
+        cost_s += sum(latency_s(problem.rules, order.weight, age_s) for order, age_s in self._ages_s(route, leaves))
         return cost_s, leaves[-1] + self._late_s
+
+    def _ages_s(self, route: Route, leaves: Sequence[float]) -> Iterator[tuple[OpenOrder, float]]:
+        """The orders that these stops give, and how long each has waited then."""
+        orders, now_s = self._problem.orders, self._problem.now_s
+        for stop, at_s in zip(route, leaves[1:], strict=True):
+            if stop.change < 0 and stop.order in orders:
+                yield orders[stop.order], at_s + self._late_s + now_s - orders[stop.order].since_s
 
     def _line(self, behind: Sequence[Waiting]) -> None:
         self.behind = tuple(behind)
@@ -124,6 +128,13 @@ class Turns:
     @property
     def cost_s(self) -> float:
         return self.route_s + self._at[-1][2]
+
+    @property
+    def weight(self) -> float:
+        """By how much the cost rises if all is done a second later; 1.0 at least, without any order."""
+        given = list(self._ages_s(self.route, leaves_s(self._problem, self.name, self.route)))
+        given += [(one.order, at[0] + one.waited_s) for one, at in zip(self.behind, self._at[1:], strict=True)]
+        return max(1.0, sum(later_by_a_second_s(self._problem.rules, order.weight, age_s) for order, age_s in given))
 
     def with_turns_s(self, behind: Sequence[Waiting]) -> float:
         """The cost, if these were in turn."""

@@ -84,11 +84,12 @@ class Start:
 @dataclass(frozen=True, slots=True)
 class Task:
     """A robot with all that it has before it, in order. `home` is the post of its home place; None: no way leads there,
-    so that it can only stand in a bay."""
+    so that it can only stand in a bay. `weight`: how much it costs to have its goals done a second later."""
 
     start: Start
     goals: tuple[Goal, ...]
     home: int | None
+    weight: float = 1.0
 
 
 class Leg(NamedTuple):

@@ -34,12 +34,17 @@ def no_pause() -> None:
 
 @dataclass(frozen=True)
 class Schedule:
-    """A journey for every robot. `cost_s`: the times at which robots with goals have done them, added up. `order`: in
-    which order they were planned, most favoured first; what is better is looked for near it."""
+    """A journey for every robot. `cost_s`: as `cost_s` has it. `order`: in which order they were planned, most favoured
+    first; what is better is looked for near it."""
 
     journeys: Journeys
     cost_s: float
     order: tuple[str, ...] = ()
+
+
+def cost_s(tasks: Tasks, journeys: Journeys) -> float:
+    """The times at which robots with goals have done them, added up, each as often as its task weighs."""
+    return sum(task.weight * journeys[name].done_s for name, task in tasks.items() if task.goals and name in journeys)
 
 
 @dataclass
@@ -58,7 +63,7 @@ class _Attempt:
         """Its work round all that is taken, if that costs less than this."""
         task = self.tasks[robot]
         self.taken.remove(robot)
-        by_s = within_s - self.cost_s if task.goals else inf
+        by_s = (within_s - self.cost_s) / task.weight if task.goals else inf
         found = find_work(self.network, self.taken, task.start, task.goals, task.home, by_s)
         if found is None:
             return False
@@ -69,7 +74,7 @@ class _Attempt:
     def _add(self, robot: str, journey: Journey) -> None:
         self.work[robot] = journey
         if self.tasks[robot].goals:
-            self.cost_s += journey.done_s
+            self.cost_s += self.tasks[robot].weight * journey.done_s
 
 
 def plan(
@@ -139,8 +144,7 @@ class Insertion:
         self._take(robot)
 
     def schedule(self) -> Schedule:
-        cost_s = sum(journey.done_s for name, journey in self.journeys.items() if self.tasks[name].goals)
-        return Schedule(dict(self.journeys), cost_s, tuple(sorted(self.tasks)))
+        return Schedule(dict(self.journeys), cost_s(self.tasks, self.journeys), tuple(sorted(self.tasks)))
 
     def _take(self, robot: str) -> None:
         """Its journey; of one that has none what it has now, for as long as it needs to begin one."""

@@ -110,3 +110,20 @@ def test_what_the_charge_does_not_last_for_comes_after_a_charge_or_with_a_robot_
     robots = {"r0": robot(0, drives_s=500.0), "busy": robot(19, route=BRINGS.stops[1:], begun=1)}
     after = decided(problem_of(street(20), robots, [BRINGS, near, far]))
     assert after.outlook.comes == {far.id: "busy"}, "though the way is longer"
+
+
+@pytest.mark.parametrize("awaited", ["east", "west"])
+def test_of_two_that_meet_the_one_that_more_orders_wait_for_goes_first(awaited: str) -> None:
+    """What waits at the end of its way is for the robot that comes there."""
+    to_east, to_west = (replace(one, loaded=True) for one in (order(0, 0, 6), order(1, 6, 0)))
+    end = {"east": 6, "west": 0}[awaited]
+    robots = {
+        "east": robot(0, route=to_east.stops[1:], begun=1),
+        "west": robot(6, route=to_west.stops[1:], begun=1),
+    }
+    orders = [to_east, to_west, *(order(number, end, end) for number in range(2, 6))]
+    after = improved(decided(problem_of(street(7), robots, orders)), Random(1), rounds(60))
+    assert set(after.outlook.comes.values()) == {awaited}
+    done_s = {name: journey.done_s for name, journey in after.timed.schedule.journeys.items()}
+    assert min(done_s, key=lambda name: done_s[name]) == awaited
+    assert after.outlook.weights == {"east": 1.0, "west": 1.0, awaited: 5.0}
