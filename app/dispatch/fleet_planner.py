@@ -6,6 +6,7 @@ look → decide → improve, in a process of its own → write, if it still hold
 
 import asyncio
 from contextlib import suppress
+from datetime import timedelta
 from random import Random
 from typing import Final
 
@@ -22,8 +23,10 @@ from app.robots.service import Fleet
 from app.traffic.schedule import TrafficSchedule
 from app.traffic.service import TrafficService
 from fleet.assignment.adopting import adopt
+from fleet.assignment.comes_next import Likely, foresee
 from fleet.assignment.cost import SLACK_S
 from fleet.assignment.deciding import Decision
+from fleet.eta.arrivals import FreeRobot
 
 IMPROVE_EVERY_S: Final = 30.0
 """Real seconds. Also when nothing was given: robots have moved since."""
@@ -64,9 +67,10 @@ class FleetPlanner:
         if decision is not None and changes and not await self._carry_out(schedule, decision, changes):
             return True
         left = [order for order in waiting if changes is None or order not in changes.given]
+        likely = await self._foresee(work, decision if left else None)
         if left:
             has_news = _has_not_seen(schedule, work)
-            told = await asyncio.to_thread(answers, work, decision, left)
+            told = await asyncio.to_thread(answers, work, decision, left, likely)
             await explain(self._fleet, [one for one in told if not (has_news and one.why == NOT_PLANNED_FOR)])
         if changes:
             self._something_new.set()
@@ -82,6 +86,15 @@ class FleetPlanner:
         async with self._desk.in_turn:
             problem = await asyncio.to_thread(self._scenes.of, work, schedule.controller, clock.utc(), clock.now())
         return await self._process.decided(problem, self._rng)
+
+    async def _foresee(self, work: OpenWork, decision: Decision | None) -> Likely:
+        """What is likely after a decision that leaves orders waiting: by it the next ones are told a time, too."""
+        found = Likely({}, {}) if decision is None else await asyncio.to_thread(foresee, decision, work.able)
+        now = self._fleet.clock.utc()
+        self._fleet.orders.ledger.estimates.free = [
+            FreeRobot(now + timedelta(seconds=in_s), post) for in_s, post in found.free.values()
+        ]
+        return found
 
     async def _carry_out(self, schedule: TrafficSchedule | None, decision: Decision, changes: Changes) -> bool:
         """False if it does not hold any more."""

@@ -93,6 +93,11 @@ class OpenWork:
     def waiting(self) -> list[OrderNow]:
         return [order for order in self.orders.values() if order.state is OrderState.QUEUED]
 
+    @property
+    def able(self) -> list[str]:
+        """The robots that may come for an order, now or after what they have."""
+        return [name for name, robot in self.robots.items() if robot.is_there and robot.held_up is None]
+
 
 async def read_open_work(session: AsyncSession, now: datetime) -> OpenWork:
     """Six questions, whatever the number of robots and orders."""

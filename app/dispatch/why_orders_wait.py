@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 
 from app.dispatch.held_up import NONE_CONNECTED, why_held_up
 from app.dispatch.open_work import OpenWork
-from fleet.assignment.comes_next import given_at_s
+from fleet.assignment.comes_next import Likely
 from fleet.assignment.deciding import Decision
 from fleet.assignment.why import Why, why_orders_wait
 
@@ -31,15 +31,12 @@ class Answer(NamedTuple):
     comes_in_s: float | None = None
 
 
-def answers(work: OpenWork, decision: Decision | None, orders: Sequence[str]) -> list[Answer]:
-    """One for each of these orders, from one decision."""
+def answers(work: OpenWork, decision: Decision | None, orders: Sequence[str], likely: Likely) -> list[Answer]:
+    """One for each of these orders, from one decision and what is likely after it."""
     whys = why_orders_wait(decision) if decision is not None else {}
-    able = [name for name, robot in work.robots.items() if robot.is_there and robot.held_up is None]
-    given = given_at_s(decision, able) if decision is not None else {}
     said = [(order, *_said(work, whys.get(order))) for order in orders]
-    now_s = 0.0 if decision is None else decision.problem.now_s
     return [
-        Answer(order, why, has_time, given[order] - now_s if has_time and order in given else None)
+        Answer(order, why, has_time, likely.comes_in_s.get(order) if has_time else None)
         for order, why, has_time in said
     ]
 

@@ -1,19 +1,29 @@
-"""When orders that have no robot yet are likely to be given, one after the other: for estimates alone.
+"""When orders that have no robot yet are likely to be given, one after the other, and when robots are free after that:
+for estimates alone.
 
 Each order of the queue, in its order there, goes to the robot that could give it first once it has done what it has.
 No robot is told to do any of it.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from math import inf
+from typing import NamedTuple
 
 from fleet.assignment.candidates import waiting_orders
 from fleet.assignment.deciding import Decision
 from fleet.assignment.timing import served_s
 
 
-def given_at_s(decision: Decision, robots: Iterable[str]) -> dict[str, float]:
-    """The time of the problem at which the robot comes to the recipient's, by order; `robots`: those that may come."""
+class Likely(NamedTuple):
+    """`comes_in_s`: until a robot comes to the recipient's, by order. `free`: in how many seconds each robot has
+    nothing more to do, and at which post, by name."""
+
+    comes_in_s: Mapping[str, float]
+    free: Mapping[str, tuple[float, str]]
+
+
+def foresee(decision: Decision, robots: Iterable[str]) -> Likely:
+    """Look ahead for the orders that wait; `robots`: those that may come."""
     problem, free = decision.problem, _free_from(decision, robots)
     shortest_s, given = problem.network.shortest_s, dict[str, float]()
     for order in waiting_orders(problem, decision.routes):
@@ -29,7 +39,11 @@ def given_at_s(decision: Decision, robots: Iterable[str]) -> dict[str, float]:
         if there_s < inf:
             given[order.id] = there_s
             free[name] = there_s + order.give.handling_s, order.give.post
-    return given
+    now_s, posts = problem.now_s, problem.network.posts
+    return Likely(
+        {order: at_s - now_s for order, at_s in given.items()},
+        {name: (at_s - now_s, posts[post]) for name, (at_s, post) in free.items()},
+    )
 
 
 def _free_from(decision: Decision, robots: Iterable[str]) -> dict[str, tuple[float, int]]:

@@ -4,16 +4,16 @@ How long until it is fetched depends on the orders before it and on the robots t
 corridor by corridor. What a plan is known of is forecast by `fleet.eta.forecast` instead.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime, tzinfo
 from functools import cached_property, reduce
 from itertools import pairwise
-from math import isfinite
+from math import inf, isfinite
 from operator import add
 from random import Random
 from statistics import fmean
-from typing import Final
+from typing import Final, NamedTuple
 
 from fleet.eta.calibration import Basis
 from fleet.eta.durations import SHORTEST_ASSUMED_S, Durations, Kind, Thing
@@ -31,6 +31,8 @@ WORKDAYS: Final = range(5)
 HOURS: Final = ("office hours", "other hours")
 LONGEST_QUEUE: Final = 4
 """Orders waiting per robot: with more it is no other kind of day."""
+SETS_OUT_S: Final = 60.0
+"""Assumed, until a robot that is free sets out, and for what keeps it on its way."""
 SPREAD: Final = 2.0
 """The far end of a window by lengths alone: everything takes up to this much longer."""
 
@@ -46,6 +48,13 @@ class Ahead:
     @property
     def per_robot(self) -> float:
         return self.orders / max(1, self.robots)
+
+
+class FreeRobot(NamedTuple):
+    """When and where a robot has nothing more to do, once it has brought its share of the orders that wait now."""
+
+    at: datetime
+    post: str
 
 
 @dataclass(frozen=True)
@@ -76,8 +85,9 @@ class Estimates:
     durations: Durations = field(default_factory=Durations)
     told: dict[Basis, Told] = field(default_factory=lambda: {basis: Told() for basis in Basis})
     ahead: Ahead = Ahead()
+    free: Sequence[FreeRobot] = ()
+    """While orders wait for robots, as dispatch expects it: it looks anew at each change. Else empty."""
     _rng: Random = field(default_factory=lambda: Random(0))
-    _drawn: dict[tuple[str, ...], Interval] = field(default_factory=dict)
     _ratios: dict[tuple[Kind, str], list[float]] = field(default_factory=dict)
     _ways_s: dict[tuple[str, str], list[float]] = field(default_factory=dict)
     _drawn_at: int = -1
@@ -86,7 +96,7 @@ class Estimates:
 
     def promise(self, from_post: str, to_post: str, begins_at: datetime) -> Promise:
         """For mail that may be fetched from then on. Raises the map's UnknownPost and NoRoute."""
-        fetch, by_map = self.fetching(from_post), self._by_map(from_post, to_post)
+        fetch, by_map = self.fetching(from_post, begins_at), self._by_map(from_post, to_post)
         hours = self.hours(begins_at)
         raw = self._draws(fetch, from_post, to_post, hours)
         told = by_map if self.is_assumed else self.told[Basis.PLACED].corrected(raw)
@@ -136,11 +146,23 @@ class Estimates:
         local = at.astimezone(self.zone)
         return HOURS[0] if local.weekday() in WORKDAYS and local.hour in self.office_hours else HOURS[1]
 
-    def fetching(self, from_post: str) -> Thing:
-        """The wait for a robot, with so many orders before this one."""
+    def fetching(self, from_post: str, begins_at: datetime) -> Thing:
+        """The wait for a robot: while others wait, too, for the one that can be there first."""
         queue = min(int(self.ahead.per_robot), LONGEST_QUEUE)
+        if (comes_s := self._first_comes_s(from_post, begins_at)) < inf:
+            return Thing(Kind.FETCH, f"planned, queue {queue}", comes_s + SETS_OUT_S)
         busy_s = self.ahead.per_robot * 2 * (self._usual_way_s + self.handover_s)
         return Thing(Kind.FETCH, f"queue {queue}", self._coming_s(from_post) + busy_s)
+
+    def _first_comes_s(self, from_post: str, begins_at: datetime) -> float:
+        ways_m = self.ways.length_m
+        return min(
+            (
+                max(0.0, (robot.at - begins_at).total_seconds()) + ways_m(robot.post, from_post) / self.speed_m_s
+                for robot in self.free
+            ),
+            default=inf,
+        )
 
     def things(self) -> list[Thing]:
         """Everything that was seen: corridors as the map has them, then stops."""
@@ -153,14 +175,11 @@ class Estimates:
     # How it is done.
 
     def _draws(self, fetch: Thing, from_post: str, to_post: str, hours: str) -> Interval:
-        """Drawn anew when enough was learned to change it; a thousand orders of one minute are told the same."""
+        """The parts are drawn anew when enough was learned to change them."""
         if self.durations.version > self._drawn_at * (1 + WORTH_DRAWING):
-            self._drawn, self._ratios, self._ways_s, self._drawn_at = {}, {}, {}, self.durations.version
-        known = (fetch.name, f"{fetch.assumed_s:.0f}", from_post, to_post, hours)
-        if known not in self._drawn:
-            fetched_s, loaded_s = map(self._part_s, (fetch, Thing(Kind.LOAD, hours, self.handover_s)))
-            self._drawn[known] = interval_of(_together(fetched_s, loaded_s, self._way_s(from_post, to_post)))
-        return self._drawn[known]
+            self._ratios, self._ways_s, self._drawn_at = {}, {}, self.durations.version
+        fetched_s, loaded_s = map(self._part_s, (fetch, Thing(Kind.LOAD, hours, self.handover_s)))
+        return interval_of(_together(fetched_s, loaded_s, self._way_s(from_post, to_post)))
 
     def _part_s(self, part: Thing) -> list[float]:
         """The draws of one part, which many ways have in common: no way has the same part twice. They are drawn as

@@ -1,7 +1,7 @@
 """The planner in the running service: orders of all robots decided together, and moved only before they have begun."""
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from contextlib import AsyncExitStack
 from dataclasses import replace
 from datetime import timedelta
@@ -16,6 +16,7 @@ from app.orders.views.schemas import NewOrder
 from fleet.assignment.deciding import Decision
 from fleet.assignment.problem import Routes
 from fleet.assignment.routes import room
+from fleet.eta.arrivals import SETS_OUT_S, FreeRobot
 from fleet.schedule.planning import plan
 from protocol.clock import SteppedClock
 from protocol.parts import Activity, Battery
@@ -104,6 +105,26 @@ async def test_orders_of_one_moment_are_spread_over_the_robots_near_them(
     mission = await robots[0].mission()
     assert [(stop.action, stop.post) for stop in mission.stops] == [("load", "post1"), ("receive", "post2")]
     assert await until(lambda: goals(service, "r1")) == [stop.id for stop in mission.stops]
+
+
+async def test_while_orders_wait_the_next_is_told_a_time_by_when_and_where_robots_are_free(
+    service: Service, robots: tuple[PlayedRobot, PlayedRobot]
+) -> None:
+    estimates, now = service.app.state.parts.estimates, service.app.state.parts.clock.utc()
+
+    async def free() -> Sequence[FreeRobot]:
+        return estimates.free
+
+    await have_no_room(service, "r1", "r2")
+    assert not estimates.free, "the next is given at once"
+    await service.order("post4", "post1")
+    free_at = {robot.post: robot.at for robot in await until(free)}
+    assert free_at.keys() == {"post3", "post1"}, "one of them is likely to bring what waits"
+    assert min(free_at.values()) > now + timedelta(seconds=60)
+    ways_s = [estimates.ways.length_m(post, "post2") / estimates.speed_m_s for post in free_at]
+    soonest = min(at + timedelta(seconds=way_s) for at, way_s in zip(free_at.values(), ways_s, strict=True))
+    comes_s = estimates.fetching("post2", now).assumed_s - SETS_OUT_S
+    assert comes_s == pytest.approx((soonest - now).total_seconds())
 
 
 async def test_an_order_more_goes_with_a_robot_under_way_and_never_before_what_it_has_begun(

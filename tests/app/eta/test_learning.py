@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 from app.accounts.sign_in.service import set_roles
 from app.core.settings import Settings
 from app.models import DurationRow, ForecastRow, Order, Role
-from fleet.eta.arrivals import ENOUGH, Ahead, Estimates
+from fleet.eta.arrivals import ENOUGH, SETS_OUT_S, Ahead, Estimates, FreeRobot
 from fleet.eta.calibration import Basis
 from fleet.eta.durations import Kind, Thing
 from fleet.eta.intervals import Interval
@@ -129,6 +129,32 @@ def test_the_more_wait_the_later_it_is_said_to_come(mailroom: Mailroom, sender: 
     assert comes_s == sorted(comes_s)
     assert comes_s[2] > 2 * comes_s[0]
     assert estimates.promise(FROM, TO, now).assumed, "but no person is told before enough was seen"
+
+
+def test_where_robots_are_planned_for_the_first_that_can_be_there_counts() -> None:
+    now = datetime(2026, 1, 5, 14, 0, tzinfo=UTC)
+    estimates = Estimates(Ways(TRACK), 0.15, 120.0)
+    way_s = Ways(TRACK).length_m(TO, FROM) / 0.15
+    in_an_hour, here_later, there_now = (
+        FreeRobot(now + timedelta(hours=1), FROM),
+        FreeRobot(now + timedelta(seconds=way_s + 10.0), FROM),
+        FreeRobot(now - timedelta(hours=1), TO),
+    )
+    comes_s = []
+    for free in ([in_an_hour], [in_an_hour, here_later], [in_an_hour, here_later, there_now]):
+        estimates.free = free
+        comes_s.append(estimates.fetching(FROM, now).assumed_s - SETS_OUT_S)
+    assert comes_s == pytest.approx([3600.0, way_s + 10.0, way_s])
+    estimates.free = [in_an_hour]
+    assert estimates.fetching(FROM, now + timedelta(hours=2)) == Thing(Kind.FETCH, "planned, queue 0", SETS_OUT_S)
+
+
+def test_robots_that_cannot_come_do_not_count() -> None:
+    now = datetime(2026, 1, 5, 14, 0, tzinfo=UTC)
+    estimates = Estimates(Ways(TRACK), 0.15, 120.0)
+    by_the_queue = estimates.fetching(FROM, now)
+    estimates.free = [FreeRobot(now, "a post of another map")]
+    assert estimates.fetching(FROM, now) == by_the_queue and by_the_queue.name == "queue 0"
 
 
 def test_office_hours_are_the_campuss_own() -> None:
