@@ -124,13 +124,18 @@ def test_a_corridor_that_opens_ends_the_waiting_for_a_way_but_no_waiting_for_peo
     assert there.cancelled == []
 
 
-def test_sent_aside_by_the_service_it_lets_others_pass_and_then_goes_on_by_its_own_plan() -> None:
-    stage = Stage(*CARRYING, "at(post3)", "direction(post4,forward)")
+def is_sent_aside(stage: Stage, place: str) -> None:
+    """Have the service answer the claim for post4 with another place."""
     stage.does("report(departed,s2)", "set_destination(post4)")
     stage.expect("claim(post4)")
-    stage.perceives("detour(post5)")
+    stage.perceives(f"detour({place})")
     stage.succeeds("claim(post4)")
-    stage.does("set_destination(post5)", "claim(post5)")
+    stage.does(f"set_destination({place})", f"claim({place})")
+
+
+def test_sent_aside_by_the_service_it_lets_others_pass_and_then_goes_on_by_its_own_plan() -> None:
+    stage = Stage(*CARRYING, "at(post3)", "direction(post4,forward)")
+    is_sent_aside(stage, "post5")
     stage.perceives("direction(post5,left)", without=("direction(post4,forward)",))
     stage.does("turn(left)")
     stage.expect("follow_line")
@@ -143,11 +148,7 @@ def test_sent_aside_by_the_service_it_lets_others_pass_and_then_goes_on_by_its_o
 
 def test_sent_into_another_bay_of_the_post_where_it_was_going_it_stays_there() -> None:
     stage = Stage(*CARRYING, "crossing(post4)", "direction(post4,left)")
-    stage.does("report(departed,s2)", "set_destination(post4)")
-    stage.expect("claim(post4)")
-    stage.perceives("detour(post4_bay2)")
-    stage.succeeds("claim(post4)")
-    stage.does("set_destination(post4_bay2)", "claim(post4_bay2)")
+    is_sent_aside(stage, "post4_bay2")
     stage.expect("follow_line")
     stage.perceives(without=("detour(post4_bay2)", "crossing(post4)"))
     stage.reaches("post4_bay2", "at(post4)", "direction(post4,arrived)")
